@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace batten::command {
+
+/// Each adds its subcommand; the work is done in the subcommand's callback and reports trouble by
+/// exceptions.
+void add_fit(CLI::App& app);
+void add_evaluate(CLI::App& app);
+void add_compare(CLI::App& app);
+void add_info(CLI::App& app);
+void add_convert(CLI::App& app);
+void add_generate(CLI::App& app);
+void add_methods(CLI::App& app);
+
+} // namespace batten::command

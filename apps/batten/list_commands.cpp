@@ -1,0 +1,51 @@
+#include "commands.hpp"
+#include "parse.hpp"
+
+#include <batten/io/points_file.hpp>
+#include <batten/iterate/methods.hpp>
+#include <batten/samples/generate.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <memory>
+
+namespace batten::command {
+
+void add_generate(CLI::App& app) {
+    struct Flags {
+        std::string name, size, output = "-";
+    };
+    CLI::App* sub = app.add_subcommand("generate", "Built-in data sets");
+    auto flags = std::make_shared<Flags>();
+    std::string list = "Data sets:\n";
+    for (const Generator& g : generators())
+        list +=
+            fmt::format("  {:<12}{} ({})\n", g.name, g.description, fmt::join(g.default_size, "x"));
+    sub->add_option("NAME", flags->name, "One of the data sets below")->required();
+    sub->add_option("--samples", flags->size, "Samples per axis: 201 or 121x121");
+    sub->add_option("--output,-o", flags->output,
+                    "Points: .csv .txt .xyz .dat .npy (which keeps a grid's shape)")
+        ->capture_default_str();
+    sub->footer(list + "Example:\n  batten generate peaks -o peaks.npy");
+    sub->callback([flags] {
+        const Samples samples =
+            generate(flags->name, flags->size.empty() ? std::vector<Index>{}
+                                                      : parse_shape("--samples", flags->size));
+        write_points(flags->output, samples.points, samples.grid);
+    });
+}
+
+void add_methods(CLI::App& app) {
+    CLI::App* sub = app.add_subcommand("methods", "The methods and their settings");
+    sub->footer("Example:\n  batten methods");
+    sub->callback([] {
+        for (const MethodEntry& entry : methods()) {
+            fmt::print("{:<10}{}{}\n", entry.name, entry.description,
+                       entry.source.empty() ? "" : fmt::format(" [{}]", entry.source));
+            for (const MethodSetting& s : entry.settings)
+                fmt::print("            --set {}=...  {}\n", s.name, s.meaning);
+        }
+    });
+}
+
+} // namespace batten::command

@@ -1,0 +1,77 @@
+#include "parse.hpp"
+
+#include <batten/core/names.hpp>
+
+#include <charconv>
+#include <fmt/format.h>
+
+namespace batten::command {
+
+namespace {
+
+template <class Number>
+bool parsed(std::string_view text, Number& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return !text.empty() && error == std::errc() && end == text.data() + text.size();
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    while (true) {
+        const std::size_t at = text.find(separator);
+        parts.push_back(text.substr(0, at));
+        if (at == std::string_view::npos) return parts;
+        text.remove_prefix(at + 1);
+    }
+}
+
+} // namespace
+
+std::vector<Index> parse_shape(std::string_view option, std::string_view text) {
+    std::vector<Index> shape;
+    for (std::string_view part : split(text, 'x')) {
+        Index n = 0;
+        if (!parsed(part, n) || n < 1)
+            throw InvalidInput(
+                fmt::format("{} {}: counts like 30, 20x30 or 8x8x8 are needed", option, text));
+        shape.push_back(n);
+    }
+    if (shape.size() > 3)
+        throw InvalidInput(fmt::format("{} {}: at most 3 axes are possible", option, text));
+    return shape;
+}
+
+std::array<double, 2> parse_spacing(std::string_view text) {
+    const auto parts = split(text, ',');
+    if (parts.size() != 2)
+        throw InvalidInput(fmt::format("--spacing {}: two numbers like 60,60 are needed", text));
+    return {parse_number("--spacing", parts[0]), parse_number("--spacing", parts[1])};
+}
+
+double parse_number(std::string_view option, std::string_view text) {
+    double value = 0;
+    if (!parsed(text, value))
+        throw InvalidInput(fmt::format("{} {}: a number is needed", option, text));
+    return value;
+}
+
+Settings parse_settings(const std::vector<std::string>& entries) {
+    Settings settings;
+    for (const std::string& entry : entries) {
+        const std::size_t equals = entry.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw InvalidInput(fmt::format("--set {}: name=value is needed", entry));
+        settings[entry.substr(0, equals)] =
+            parse_number("--set " + entry.substr(0, equals + 1), entry.substr(equals + 1));
+    }
+    return settings;
+}
+
+std::size_t parse_choice(std::string_view option, std::string_view text,
+                         std::span<const std::string_view> choices) {
+    for (std::size_t k = 0; k < choices.size(); ++k)
+        if (choices[k] == text) return k;
+    throw InvalidInput(unknown_name(fmt::format("value of {}", option), text, choices));
+}
+
+} // namespace batten::command

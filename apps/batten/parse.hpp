@@ -1,0 +1,29 @@
+#pragma once
+
+#include <batten/core/core.hpp>
+#include <batten/iterate/method.hpp>
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace batten::command {
+
+/// `30`, `20x30` or `8x8x8`; throws InvalidInput naming the option.
+std::vector<Index> parse_shape(std::string_view option, std::string_view text);
+
+/// `DX,DY`.
+std::array<double, 2> parse_spacing(std::string_view text);
+
+/// One number; throws InvalidInput naming the option.
+double parse_number(std::string_view option, std::string_view text);
+
+/// `name=value` for each entry.
+Settings parse_settings(const std::vector<std::string>& entries);
+
+/// Position of `text` in `choices`; throws InvalidInput with the nearest when it is none of them.
+std::size_t parse_choice(std::string_view option, std::string_view text,
+                         std::span<const std::string_view> choices);
+
+} // namespace batten::command

@@ -1,0 +1,157 @@
+#include "commands.hpp"
+#include "parse.hpp"
+
+#include <batten/io/output_file.hpp>
+#include <batten/io/points_file.hpp>
+#include <batten/io/spline_file.hpp>
+#include <batten/measure/deviation.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <memory>
+
+namespace batten::command {
+
+namespace {
+
+/// `count` parameters evenly over an axis's domain.
+std::vector<double> even_parameters(const KnotVector& axis, Index count) {
+    std::vector<double> t;
+    for (Index i = 0; i < count; ++i)
+        t.push_back(count == 1 ? axis.begin()
+                               : axis.begin() + axis.length() * static_cast<double>(i) /
+                                                    static_cast<double>(count - 1));
+    return t;
+}
+
+void evaluate_spline(const std::string& path, const std::string& samples,
+                     const std::string& parameters, const std::string& output,
+                     std::vector<int> orders) {
+    const Spline spline = read_spline(path);
+    if (samples.empty() == parameters.empty())
+        throw InvalidInput("evaluate: one of --samples and --parameters is needed");
+    if (orders.size() == 1) orders.resize(static_cast<std::size_t>(spline.axis_count()), 0);
+    if (!parameters.empty())
+        return write_points(output, evaluate(spline, read_table(parameters), orders));
+    std::vector<Index> counts = parse_shape("--samples", samples);
+    if (counts.size() == 1) counts.resize(static_cast<std::size_t>(spline.axis_count()), counts[0]);
+    if (static_cast<Index>(counts.size()) != spline.axis_count())
+        throw InvalidInput(
+            fmt::format("--samples {}: the spline has {} axes", samples, spline.axis_count()));
+    std::vector<std::vector<double>> axes;
+    for (std::size_t k = 0; k < counts.size(); ++k)
+        axes.push_back(even_parameters(spline.axes()[k], counts[k]));
+    write_points(output, evaluate_grid(spline, axes, orders),
+                 counts.size() > 1 ? counts : std::vector<Index>{});
+}
+
+void compare(const std::string& spline_path, const std::string& points_path) {
+    const Spline spline = read_spline(spline_path);
+    const Samples samples = read_points(points_path);
+    std::vector<double> distances;
+    for (const ClosestPoint& found : closest_points(spline, samples.points))
+        distances.push_back(found.distance);
+    const Deviation d = summarise(distances, DeviationKind::distance);
+    fmt::print("{} points, distance to the closest point of the spline: largest {:.6g} at sample "
+               "{}, rms {:.6g}\n",
+               samples.size(), d.maximum, d.worst_sample, d.rms);
+}
+
+void describe_spline(const std::string& path) {
+    const Spline spline = read_spline(path);
+    constexpr const char* kinds[] = {"curve", "surface", "volume"};
+    const PointSet box = bounding_box(spline.control_points());
+    fmt::print("{}: B-spline {} in dimension {}, {} control points\n", path,
+               kinds[spline.axis_count() - 1], spline.dim(),
+               fmt::join(spline.control_shape(), "x"));
+    for (Index k = 0; k < spline.axis_count(); ++k) {
+        const KnotVector& axis = spline.axis(k);
+        fmt::print("  axis {}: degree {}, {}, {} knots, domain [{:.6g}, {:.6g}], {} pieces\n", k,
+                   axis.degree(), axis.closed() ? "closed" : "open", axis.knots().size(),
+                   axis.begin(), axis.end(), axis.breakpoints().size() - 1);
+    }
+    fmt::print("  control points from ({:.6g}) to ({:.6g})\n", fmt::join(box[0], ", "),
+               fmt::join(box[1], ", "));
+}
+
+void describe_points(const std::string& path) {
+    const Samples samples = read_points(path);
+    const PointSet box = bounding_box(samples.points);
+    fmt::print("{}: {} points in dimension {}{}\n", path, samples.size(), samples.dim(),
+               samples.grid.empty() ? ""
+                                    : fmt::format(", a grid {}", fmt::join(samples.grid, "x")));
+    fmt::print("  from ({:.6g}) to ({:.6g}), diagonal {:.6g}\n", fmt::join(box[0], ", "),
+               fmt::join(box[1], ", "), diagonal(samples.points));
+    Index repeated = 0;
+    for (Index i = 1; i < samples.size(); ++i)
+        repeated += std::ranges::equal(samples.points[i], samples.points[i - 1]) ? 1 : 0;
+    if (repeated > 0) fmt::print("  {} identical consecutive points\n", repeated);
+    for (const std::string& note : samples.notes) fmt::print("  {}\n", note);
+}
+
+} // namespace
+
+void add_evaluate(CLI::App& app) {
+    struct Flags {
+        std::string spline, samples, parameters, output = "-";
+        std::vector<int> orders;
+    };
+    CLI::App* sub = app.add_subcommand("evaluate", "Points of a spline");
+    auto flags = std::make_shared<Flags>();
+    sub->add_option("SPLINE", flags->spline, "Spline .json")->required();
+    sub->add_option("--samples", flags->samples,
+                    "Points per axis, evenly over the domain: 200 or 40x60");
+    sub->add_option("--parameters", flags->parameters, "File of parameters, one row per point");
+    sub->add_option("--derivative", flags->orders, "Derivative orders, one per axis: 1 or 1,0")
+        ->delimiter(',');
+    sub->add_option("--output,-o", flags->output, "Points: .csv .txt .xyz .dat .npy")
+        ->capture_default_str();
+    sub->footer("Example:\n  batten evaluate part.json --samples 500 -o points.csv");
+    sub->callback([flags] {
+        evaluate_spline(flags->spline, flags->samples, flags->parameters, flags->output,
+                        flags->orders);
+    });
+}
+
+void add_compare(CLI::App& app) {
+    struct Flags {
+        std::string spline, points;
+    };
+    CLI::App* sub = app.add_subcommand("compare", "Distances of points from a spline");
+    auto flags = std::make_shared<Flags>();
+    sub->add_option("SPLINE", flags->spline, "Spline .json")->required();
+    sub->add_option("POINTS", flags->points, "Points")->required();
+    sub->footer("Example:\n  batten compare part.json measured.csv");
+    sub->callback([flags] { compare(flags->spline, flags->points); });
+}
+
+void add_info(CLI::App& app) {
+    CLI::App* sub = app.add_subcommand("info", "What is in a file");
+    auto file = std::make_shared<std::string>();
+    sub->add_option("FILE", *file, "A spline or points")->required();
+    sub->footer("Example:\n  batten info part.json");
+    sub->callback(
+        [file] { extension(*file) == ".json" ? describe_spline(*file) : describe_points(*file); });
+}
+
+void add_convert(CLI::App& app) {
+    struct Flags {
+        std::string spline;
+        std::vector<std::string> outputs;
+    };
+    CLI::App* sub = app.add_subcommand("convert", "A spline in another format");
+    auto flags = std::make_shared<Flags>();
+    sub->add_option("SPLINE", flags->spline, "Spline .json")->required();
+    sub->add_option("--output,-o", flags->outputs,
+                    "File whose extension names the format; may be repeated")
+        ->required();
+    sub->footer("Example:\n  batten convert part.json -o part.svg");
+    sub->callback([flags] {
+        for (const std::string& output : flags->outputs) check_output(output);
+        const Spline spline = read_spline(flags->spline);
+        for (const std::string& output : flags->outputs)
+            write_spline(output, {spline, nullptr, flags->spline});
+    });
+}
+
+} // namespace batten::command

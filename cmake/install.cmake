@@ -1,0 +1,12 @@
+# Install and export: find_package(batten) gives batten::batten.
+include(CMakePackageConfigHelpers)
+
+install(TARGETS batten_library EXPORT batten-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS batten_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/batten DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
+install(EXPORT batten-targets NAMESPACE batten:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/batten)
+configure_package_config_file(cmake/batten-config.cmake.in ${CMAKE_BINARY_DIR}/batten-config.cmake
+                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/batten)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/batten-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/batten-config.cmake ${CMAKE_BINARY_DIR}/batten-config-version.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/batten)

@@ -1,0 +1,78 @@
+#include <batten/basis/place_knots.hpp>
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace batten {
+
+namespace {
+
+void check_count(int degree, Index n) {
+    if (degree < 1 || degree > max_degree)
+        throw InvalidInput(fmt::format("degree {} is outside 1 to {}", degree, max_degree));
+    if (n < degree + 1)
+        throw InvalidInput(fmt::format("degree {} needs at least {} control points, got {}", degree,
+                                       degree + 1, n));
+}
+
+/// Interior breakpoints for n control points: n - p - 1 of an open axis, n - 1 of a closed one.
+Index interior_count(int degree, Index n, Closure closure) {
+    return closure == Closure::closed ? n - 1 : n - degree - 1;
+}
+
+} // namespace
+
+KnotVector knots_from_parameters(std::span<const double> parameters, int degree, Index n,
+                                 Closure closure) {
+    check_count(degree, n);
+    const auto m = static_cast<Index>(parameters.size());
+    if (n > m)
+        throw InvalidInput(
+            fmt::format("{} control points need at least as many samples, got {}", n, m));
+    const Index count = interior_count(degree, n, closure);
+    const double d = static_cast<double>(m) / static_cast<double>(count + 1);
+    std::vector<double> interior;
+    for (Index j = 1; j <= count; ++j) {
+        const double jd = static_cast<double>(j) * d;
+        const auto i = static_cast<Index>(std::floor(jd));
+        const double alpha = jd - static_cast<double>(i);
+        interior.push_back((1 - alpha) * parameters[static_cast<std::size_t>(i - 1)] +
+                           alpha * parameters[static_cast<std::size_t>(i)]);
+    }
+    if (closure == Closure::closed) return knots_around(degree, interior, 0, 1, closure);
+    return knots_around(degree, interior, parameters.front(), parameters.back(), closure);
+}
+
+KnotVector uniform_knots(int degree, Index n, double begin, double end, Closure closure) {
+    check_count(degree, n);
+    const Index count = interior_count(degree, n, closure);
+    std::vector<double> interior;
+    for (Index j = 1; j <= count; ++j)
+        interior.push_back(begin +
+                           (end - begin) * static_cast<double>(j) / static_cast<double>(count + 1));
+    return knots_around(degree, interior, begin, end, closure);
+}
+
+KnotVector knots_around(int degree, std::span<const double> interior, double begin, double end,
+                        Closure closure) {
+    const auto p = static_cast<std::size_t>(degree);
+    std::vector<double> knots;
+    if (closure == Closure::open) {
+        knots.assign(p + 1, begin);
+        knots.insert(knots.end(), interior.begin(), interior.end());
+        knots.insert(knots.end(), p + 1, end);
+        return {degree, std::move(knots), closure};
+    }
+    std::vector<double> cycle{begin};
+    cycle.insert(cycle.end(), interior.begin(), interior.end());
+    const auto n = static_cast<Index>(cycle.size());
+    const double period = end - begin;
+    for (Index i = -degree; i <= n + degree; ++i) {
+        const Index turn = i >= 0 ? i / n : -((-i + n - 1) / n);
+        knots.push_back(cycle[static_cast<std::size_t>(i - turn * n)] +
+                        static_cast<double>(turn) * period);
+    }
+    return {degree, std::move(knots), closure};
+}
+
+} // namespace batten

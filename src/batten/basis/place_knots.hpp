@@ -1,0 +1,29 @@
+#pragma once
+
+#include <batten/basis/knot_vector.hpp>
+
+namespace batten {
+
+/// Where knots go for a stated number of control points.
+enum class KnotPlacement {
+    data, ///< between the parameters, every span holding some [PieglTiller1997, eq. 9.68 and 9.69]
+    uniform, ///< evenly over the domain
+};
+
+/// Knots of degree p for n free control points over [parameters.front(), parameters.back()]
+/// (closed: one period from 0 to 1), placed between the ascending `parameters`. Throws InvalidInput
+/// when n < p + 1, or n exceeds the number of parameters.
+KnotVector knots_from_parameters(std::span<const double> parameters, int degree, Index n,
+                                 Closure closure = Closure::open);
+
+/// Evenly spaced knots for n free control points over [begin, end]; clamped, or periodic when
+/// closed.
+KnotVector uniform_knots(int degree, Index n, double begin, double end,
+                         Closure closure = Closure::open);
+
+/// Knots with the given ascending interior ones over [begin, end]: clamped, or periodic when closed
+/// (then `begin` is a breakpoint too).
+KnotVector knots_around(int degree, std::span<const double> interior, double begin, double end,
+                        Closure closure = Closure::open);
+
+} // namespace batten

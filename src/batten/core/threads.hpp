@@ -1,0 +1,31 @@
+#pragma once
+
+#include <batten/core/index.hpp>
+
+#include <functional>
+
+namespace batten {
+
+/// Limits every pass of this library to `count` threads while the object lives; 0 means all cores.
+class ThreadLimit {
+  public:
+    explicit ThreadLimit(int count);
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+  private:
+    struct State;
+    State* state_;
+};
+
+/// Calls `work(k)` once for every k in [0, count), in any order, on the threads allowed.
+///
+/// Results stay bit-identical for any number of threads when each call writes its own place
+/// and the caller merges the places in the order of k.
+void for_each_chunk(Index count, const std::function<void(Index)>& work);
+
+/// Threads that for_each_chunk may use now.
+int thread_count();
+
+} // namespace batten

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <batten/fit/options.hpp>
+
+namespace batten {
+
+/// Options spread over the axes of given samples: one entry per axis each.
+struct AxisPlan {
+    std::vector<int> degree;
+    std::vector<Index> control_points;
+    std::vector<Closure> closures;
+};
+
+/// Throws InvalidInput when the options' lists do not fit the number of axes, or no size is given.
+AxisPlan plan_axes(const Samples& samples, const ShapeOptions& options);
+
+/// The parameters that the options give or rule. Closed axes have period 1.
+Parameters choose_parameters(const Samples& samples, const ShapeOptions& options,
+                             const AxisPlan& plan);
+
+/// The knots that the options give or rule, per axis; names the axis in what it throws.
+std::vector<KnotVector> choose_knots(const Parameters& parameters, const ShapeOptions& options,
+                                     const AxisPlan& plan);
+
+/// Free control points (N x dim) to start from.
+PointSet initial_control(const Samples& samples, const Parameters& parameters,
+                         const std::vector<KnotVector>& axes, const MethodOptions& options);
+
+} // namespace batten

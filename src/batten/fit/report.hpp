@@ -1,0 +1,55 @@
+#pragma once
+
+#include <batten/iterate/iterate.hpp>
+#include <batten/measure/deviation.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace batten {
+
+/// One iteration, as kept on request.
+struct HistoryEntry {
+    Index iteration;
+    double gradient_norm;
+    double largest_move;
+};
+
+/// What was fitted, how it went and how far the samples are: the same object for library, command
+/// and page.
+struct FitReport {
+    std::string kind; ///< curve, surface or volume
+    Index samples = 0;
+    Index dim = 0;
+    std::vector<int> degree;
+    std::vector<Index> control_shape; ///< as stored; a closed axis repeats its first degree
+    std::vector<Closure> closures;
+    std::string method;
+    std::string method_reason; ///< why `auto` chose it; empty when the caller did
+    Settings settings;
+    Termination termination = Termination::converged;
+    Index iterations = 0;
+    double gradient_norm = 0;
+    double first_gradient_norm = 0;
+    double predicted_rate = 0; ///< 0 when the theory gives none
+    double observed_rate = 0;  ///< 0 when the run was too short
+    Deviation deviation;
+    double data_size = 0;                                ///< diagonal of the samples' box
+    std::vector<std::pair<std::string, double>> seconds; ///< per stage, in order
+    std::vector<HistoryEntry> history;
+    std::vector<std::string> notes;
+
+    /// Whether the spline can be used: all endings but breakdown.
+    bool usable() const { return termination != Termination::breakdown; }
+    /// Sum of the stages.
+    double total_seconds() const;
+    /// One line.
+    std::string brief() const;
+    /// A few aligned lines.
+    std::string full() const;
+    /// The JSON of docs/formats.md.
+    std::string to_json() const;
+};
+
+} // namespace batten

@@ -1,0 +1,157 @@
+#include <batten/core/names.hpp>
+#include <batten/io/output_file.hpp>
+#include <batten/io/point_formats.hpp>
+#include <batten/io/points_file.hpp>
+#include <batten/io/spline_file.hpp>
+#include <batten/io/svg.hpp>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace batten {
+
+namespace {
+
+/// A file format of points.
+struct PointFormat {
+    std::string_view extension;
+    NumberArray (*parse)(const std::filesystem::path&, std::string_view);
+    std::string (*format)(const Points&, const std::vector<Index>& grid);
+};
+
+std::string comma_text(const Points& points, const std::vector<Index>&) {
+    return format_text(points, ',');
+}
+std::string blank_text(const Points& points, const std::vector<Index>&) {
+    return format_text(points, ' ');
+}
+
+constexpr PointFormat point_formats[] = {
+    {".csv", parse_text, comma_text}, {".txt", parse_text, blank_text},
+    {".xyz", parse_text, blank_text}, {".dat", parse_text, blank_text},
+    {".npy", parse_npy, format_npy},
+};
+
+std::vector<SplineFormat>& registry() {
+    static std::vector<SplineFormat> all = {
+        {".json", "batten's own exact format",
+         [](const Scene& scene) { return spline_json(scene.spline); }, parse_spline_json},
+        {".svg", "picture of a planar curve, exact cubic Beziers", svg_picture, {}},
+    };
+    return all;
+}
+
+const PointFormat& point_format(const std::filesystem::path& path) {
+    const std::string wanted = path == "-" ? ".txt" : extension(path);
+    std::vector<std::string_view> known;
+    for (const PointFormat& format : point_formats) {
+        if (format.extension == wanted) return format;
+        known.push_back(format.extension);
+    }
+    throw InvalidInput(
+        fmt::format("{}: {}", path.string(), unknown_name("extension of points", wanted, known)));
+}
+
+const SplineFormat& spline_format(const std::filesystem::path& path) {
+    const std::string wanted = path == "-" ? ".json" : extension(path);
+    std::vector<std::string_view> known;
+    for (const SplineFormat& format : registry()) {
+        if (format.extension == wanted) return format;
+        known.push_back(format.extension);
+    }
+    throw InvalidInput(fmt::format("{}: unknown extension '{}'; known: {}", path.string(), wanted,
+                                   fmt::join(known, ", ")));
+}
+
+NumberArray read_numbers(const std::filesystem::path& path) {
+    const PointFormat& format = point_format(path);
+    const std::string content = read_file(path);
+    if (content.empty()) throw FileError(fmt::format("{}: the file is empty", path.string()));
+    return format.parse(path, content);
+}
+
+Samples heights_from(NumberArray array, const std::array<double, 2>& spacing,
+                     const std::filesystem::path& path) {
+    if (array.shape.size() != 2)
+        throw InvalidInput(fmt::format("{}: heights need a table of 2 axes, got {}", path.string(),
+                                       fmt::join(array.shape, "x")));
+    const std::array<Index, 2> shape{array.shape[0], array.shape[1]};
+    return height_samples(Points(PointSet(std::move(array.values), 1)), shape, spacing);
+}
+
+Samples points_from(NumberArray array, const std::vector<Index>& grid,
+                    const std::filesystem::path& path) {
+    const std::vector<Index>& shape = array.shape;
+    if (shape.empty() || shape.size() > 4)
+        throw InvalidInput(fmt::format(
+            "{}: an array of {} axes; m x dim, or a grid m1 x m2 (x m3) x dim, is needed",
+            path.string(), shape.size()));
+    const Index dim = shape.size() == 1 ? 1 : shape.back();
+    if (dim < 1 || dim > 16)
+        throw InvalidInput(
+            fmt::format("{}: {} means points of dimension {}, outside 1 to 16{}", path.string(),
+                        fmt::join(shape, "x"), dim,
+                        shape.size() == 2 ? "; --heights reads it as a grid of heights" : ""));
+    Samples samples;
+    if (shape.size() > 2) samples.grid.assign(shape.begin(), shape.end() - 1);
+    if (!grid.empty()) samples.grid = grid;
+    samples.points = Points(PointSet(std::move(array.values), dim));
+    samples.notes = std::move(array.notes);
+    return samples;
+}
+
+} // namespace
+
+Samples read_points(const std::filesystem::path& path, const ReadOptions& options) {
+    NumberArray array = read_numbers(path);
+    Samples samples = options.heights ? heights_from(std::move(array), options.spacing, path)
+                                      : points_from(std::move(array), options.grid, path);
+    check(samples);
+    return samples;
+}
+
+PointSet read_table(const std::filesystem::path& path) {
+    NumberArray array = read_numbers(path);
+    return {std::move(array.values), array.shape.size() < 2 ? 1 : array.shape.back()};
+}
+
+void write_points(const std::filesystem::path& path, const Points& points,
+                  const std::vector<Index>& grid) {
+    write_file(path, point_format(path).format(points, grid));
+}
+
+std::span<const SplineFormat> spline_formats() {
+    return registry();
+}
+
+void register_format(SplineFormat format) {
+    registry().push_back(std::move(format));
+}
+
+void check_output(const std::filesystem::path& path) {
+    spline_format(path);
+    check_folder(path);
+}
+
+void check_folder(const std::filesystem::path& path) {
+    if (path == "-") return;
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder))
+        throw FileError(
+            fmt::format("{}: the folder {} does not exist", path.string(), folder.string()));
+}
+
+Spline read_spline(const std::filesystem::path& path) {
+    const SplineFormat& format = spline_format(path);
+    if (!format.read)
+        throw InvalidInput(
+            fmt::format("{}: {} files are written, not read", path.string(), format.extension));
+    return format.read(path, read_file(path));
+}
+
+void write_spline(const std::filesystem::path& path, const Scene& scene) {
+    write_file(path, spline_format(path).write(scene));
+}
+
+} // namespace batten

@@ -1,0 +1,97 @@
+#include <batten/io/spline_file.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace batten {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// A list over the axes, written by `entry` for each.
+template <class Entry>
+std::string over_axes(const Spline& spline, Entry entry) {
+    std::string text = "[";
+    for (const KnotVector& axis : spline.axes())
+        text += (text.size() > 1 ? ", " : "") + entry(axis);
+    return text + "]";
+}
+
+Spline build(const Json& json) {
+    if (!json.is_object() || json.value("format", "") != "batten-spline")
+        throw InvalidInput("\"format\" is not \"batten-spline\"");
+    if (json.at("version").get<int>() != 1)
+        throw InvalidInput(fmt::format("version {} is not 1", json.at("version").dump()));
+    const auto degree = json.at("degree").get<std::vector<int>>();
+    const auto knots = json.at("knots").get<std::vector<std::vector<double>>>();
+    const auto shape = json.at("control_shape").get<std::vector<Index>>();
+    const auto closed = json.value("closed", std::vector<bool>(degree.size(), false));
+    if (knots.size() != degree.size() || shape.size() != degree.size() ||
+        closed.size() != degree.size())
+        throw InvalidInput("degree, knots, control_shape and closed need one entry per axis each");
+    std::vector<KnotVector> axes;
+    for (std::size_t k = 0; k < degree.size(); ++k) {
+        axes.emplace_back(degree[k], knots[k], closed[k] ? Closure::closed : Closure::open);
+        if (axes.back().control_count() != shape[k])
+            throw InvalidInput(fmt::format(
+                "axis {}: {} knots of degree {} make {} control points, control_shape says {}", k,
+                knots[k].size(), degree[k], axes.back().control_count(), shape[k]));
+    }
+    const Json& rows = json.at("control_points");
+    if (!rows.is_array() || rows.empty() || !rows[0].is_array() || rows[0].empty())
+        throw InvalidInput("control_points is not a list of points");
+    PointSet control(static_cast<Index>(rows.size()), static_cast<Index>(rows[0].size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto point = rows[i].get<std::vector<double>>();
+        if (static_cast<Index>(point.size()) != control.dim())
+            throw InvalidInput(fmt::format("control point {} has {} coordinates, the first has {}",
+                                           i, point.size(), control.dim()));
+        std::copy(point.begin(), point.end(), control[static_cast<Index>(i)].begin());
+    }
+    return {std::move(axes), std::move(control)};
+}
+
+} // namespace
+
+std::string spline_json(const Spline& spline) {
+    fmt::memory_buffer out;
+    const auto append = std::back_inserter(out);
+    bool any_closed = false;
+    for (const KnotVector& axis : spline.axes()) any_closed = any_closed || axis.closed();
+    fmt::format_to(append, "{{\n  \"format\": \"batten-spline\",\n  \"version\": 1,\n");
+    fmt::format_to(append, "  \"degree\": {},\n", over_axes(spline, [](const KnotVector& k) {
+                       return fmt::format("{}", k.degree());
+                   }));
+    if (any_closed)
+        fmt::format_to(append, "  \"closed\": {},\n", over_axes(spline, [](const KnotVector& k) {
+                           return fmt::format("{}", k.closed());
+                       }));
+    fmt::format_to(append, "  \"knots\": {},\n", over_axes(spline, [](const KnotVector& k) {
+                       return fmt::format("[{}]", fmt::join(k.knots(), ", "));
+                   }));
+    fmt::format_to(append, "  \"control_shape\": [{}],\n  \"control_points\": [\n",
+                   fmt::join(spline.control_shape(), ", "));
+    const PointSet& control = spline.control_points();
+    for (Index i = 0; i < control.size(); ++i)
+        fmt::format_to(append, "    [{}]{}\n", fmt::join(control[i], ", "),
+                       i + 1 < control.size() ? "," : "");
+    fmt::format_to(append, "  ]\n}}\n");
+    return fmt::to_string(out);
+}
+
+Spline parse_spline_json(const std::filesystem::path& path, const std::string& content) {
+    try {
+        return build(Json::parse(content));
+    } catch (const Json::exception& error) {
+        std::string what = error.what(); // "[json.exception...] words"
+        const std::size_t end = what.find("] ");
+        throw FileError(fmt::format("{}: {}", path.string(),
+                                    end == std::string::npos ? what : what.substr(end + 2)));
+    } catch (const InvalidInput& error) {
+        throw FileError(fmt::format("{}: {}", path.string(), error.what()));
+    }
+}
+
+} // namespace batten

@@ -1,0 +1,157 @@
+#include <batten/io/svg.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace batten {
+
+namespace {
+
+constexpr double picture_size = 900; // pixels of the longer side, margin apart
+constexpr double margin = 36;
+
+/// Data coordinates to pixels, y upwards.
+struct Frame {
+    double left, top, scale;
+    double width, height;
+    std::string at(double x, double y) const {
+        return fmt::format("{:.3f} {:.3f}", margin + (x - left) * scale,
+                           margin + (top - y) * scale);
+    }
+};
+
+Frame frame_around(const PointSet& box) {
+    const double w = box(1, 0) - box(0, 0);
+    const double h = box(1, 1) - box(0, 1);
+    const double size = std::max({w, h, 1e-300});
+    const double scale = picture_size / size;
+    return {box(0, 0), box(1, 1), scale, w * scale + 2 * margin, h * scale + 2 * margin};
+}
+
+/// The four cubic Bezier points of the piece over a span, exact for degrees 1 to 3.
+std::array<std::vector<double>, 4> bezier(const Spline& curve, Index span) {
+    const KnotVector& k = curve.axis(0);
+    const int p = k.degree();
+    const double a = k[span];
+    const double b = k[span + 1];
+    std::vector<std::vector<double>> own; // the piece's own Bezier points
+    for (int i = 0; i <= p; ++i) {
+        std::vector<double> arguments(static_cast<std::size_t>(p), a);
+        std::fill(arguments.end() - i, arguments.end(), b);
+        own.push_back(blossom(k, curve.control_points(), span, arguments));
+    }
+    while (own.size() < 4) { // degree elevation
+        const std::size_t n = own.size();
+        std::vector<std::vector<double>> higher(n + 1, own[0]);
+        higher[n] = own[n - 1];
+        for (std::size_t i = 1; i < n; ++i)
+            for (std::size_t d = 0; d < 2; ++d) {
+                const double f = static_cast<double>(i) / static_cast<double>(n);
+                higher[i][d] = f * own[i - 1][d] + (1 - f) * own[i][d];
+            }
+        own = std::move(higher);
+    }
+    return {own[0], own[1], own[2], own[3]};
+}
+
+std::string curve_path(const Spline& curve, const Frame& frame) {
+    const KnotVector& k = curve.axis(0);
+    std::string path;
+    for (Index span = k.degree(); span < k.control_count(); ++span) {
+        if (!(k[span + 1] > k[span])) continue;
+        if (k.degree() <= 3) {
+            const auto b = bezier(curve, span);
+            if (path.empty()) path = "M " + frame.at(b[0][0], b[0][1]);
+            path += fmt::format(" C {}, {}, {}", frame.at(b[1][0], b[1][1]),
+                                frame.at(b[2][0], b[2][1]), frame.at(b[3][0], b[3][1]));
+            continue;
+        }
+        constexpr int pieces = 32;
+        for (int s = path.empty() ? 0 : 1; s <= pieces; ++s) {
+            const auto point = curve(std::array{k[span] + (k[span + 1] - k[span]) * s / pieces});
+            path += (path.empty() ? "M " : " L ") + frame.at(point[0], point[1]);
+        }
+    }
+    return path;
+}
+
+std::string escaped(std::string_view text) {
+    std::string result;
+    for (char c : text) {
+        if (c == '<')
+            result += "&lt;";
+        else if (c == '>')
+            result += "&gt;";
+        else if (c == '&')
+            result += "&amp;";
+        else if (c == '"')
+            result += "&quot;";
+        else
+            result += c;
+    }
+    return result;
+}
+
+std::string dots(const Points& points, const Frame& frame, double radius) {
+    std::string path;
+    for (Index i = 0; i < points.size(); ++i)
+        path += fmt::format("M {} h 0 ", frame.at(points(i, 0), points(i, 1)));
+    return fmt::format("  <path class=\"samples\" d=\"{}\" stroke-width=\"{}\"/>\n", path,
+                       2 * radius);
+}
+
+PointSet box_around(const Scene& scene) {
+    PointSet box = bounding_box(scene.spline.control_points());
+    if (scene.samples == nullptr || scene.samples->dim() != 2) return box;
+    const PointSet other = bounding_box(scene.samples->points);
+    for (Index d = 0; d < 2; ++d) {
+        box(0, d) = std::min(box(0, d), other(0, d));
+        box(1, d) = std::max(box(1, d), other(1, d));
+    }
+    return box;
+}
+
+} // namespace
+
+std::string svg_picture(const Scene& scene) {
+    const Spline& curve = scene.spline;
+    if (curve.axis_count() != 1 || curve.dim() != 2)
+        throw InvalidInput(fmt::format(
+            "an .svg picture needs a curve in the plane, this spline has {} axes in dimension {}",
+            curve.axis_count(), curve.dim()));
+    const Frame frame = frame_around(box_around(scene));
+    std::string svg = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.1f} "
+                                  "{:.1f}\" width=\"{:.0f}\" height=\"{:.0f}\">\n",
+                                  frame.width, frame.height, frame.width, frame.height);
+    svg +=
+        "  <style>\n"
+        "    .samples { stroke: #e07b39; stroke-linecap: round; fill: none; }\n"
+        "    .curve { stroke: #1f4e79; stroke-width: 1.8; fill: none; stroke-linejoin: round; }\n"
+        "    .polygon { stroke: #9aa5b1; stroke-width: 0.8; fill: none; stroke-dasharray: 4 3; }\n"
+        "    .control { fill: #ffffff; stroke: #5c6b7a; stroke-width: 1; }\n"
+        "  </style>\n"
+        "  <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
+    if (!scene.title.empty()) svg += fmt::format("  <title>{}</title>\n", escaped(scene.title));
+    const PointSet& control = curve.control_points();
+    std::string polygon;
+    for (Index i = 0; i < control.size(); ++i)
+        polygon += (i == 0 ? "M " : " L ") + frame.at(control(i, 0), control(i, 1));
+    svg += fmt::format("  <path class=\"polygon\" d=\"{}\"/>\n", polygon);
+    if (scene.samples != nullptr && scene.samples->dim() == 2) {
+        const double crowd = static_cast<double>(scene.samples->size());
+        svg += dots(scene.samples->points, frame, std::clamp(40 / std::sqrt(crowd), 0.8, 2.4));
+    }
+    svg += fmt::format("  <path class=\"curve\" d=\"{}{}\"/>\n", curve_path(curve, frame),
+                       curve.axis(0).closed() ? " Z" : "");
+    const double mark = control.size() > 150 ? 1.6 : 2.6;
+    for (Index i = 0; i < control.size(); ++i) {
+        const std::string at = frame.at(control(i, 0), control(i, 1));
+        const std::size_t gap = at.find(' ');
+        svg += fmt::format("  <circle class=\"control\" cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n",
+                           at.substr(0, gap), at.substr(gap + 1), mark);
+    }
+    return svg + "</svg>\n";
+}
+
+} // namespace batten

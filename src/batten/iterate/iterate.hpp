@@ -1,0 +1,74 @@
+#pragma once
+
+#include <batten/iterate/method.hpp>
+
+#include <functional>
+
+namespace batten {
+
+/// When the loop ends; a test of 0 is off.
+struct StopRule {
+    Index max_iterations = 10000;
+    /// Stop when the method's gradient norm is at most this.
+    double gradient = 0;
+    /// Stop when it is at most this times its first value.
+    double relative_gradient = 1e-10;
+    /// Stop when the largest deviation of a sample is at most this.
+    double deviation = 0;
+};
+
+/// How a fit ended.
+enum class Termination {
+    converged,         ///< the stop rule held (a direct solution: always)
+    iteration_limit,   ///< the most iterations allowed were made
+    tolerance_met,     ///< every sample is within the stated tolerance
+    tolerance_not_met, ///< it is not, and the report says why
+    stalled,           ///< the moves vanished before the stop rule held
+    breakdown,         ///< numbers left the finite range
+    cancelled,         ///< the caller asked to stop
+};
+
+std::string_view to_string(Termination termination);
+
+/// What an observer sees at every iteration, before the move.
+struct Iteration {
+    Index number;
+    /// P^k, relative to the system's centre; valid during the call.
+    const PointSet& control;
+    double gradient_norm;
+    /// Length of the longest move made to get here, 0 at first.
+    double largest_move;
+};
+
+enum class Continue { yes, no };
+using Observer = std::function<Continue(const Iteration&)>;
+
+/// Shortens or turns the proposed moves so that a shape is kept: (control points, moves).
+using StepLimit = std::function<void(const PointSet&, PointSet&)>;
+
+/// Largest deviation of a sample from the spline with these control points.
+using DeviationMeasure = std::function<double(const PointSet&)>;
+
+/// Optional parts of the loop.
+struct IterateHooks {
+    Observer observer;
+    StepLimit limit;
+    DeviationMeasure deviation; ///< needed when StopRule::deviation is not 0
+};
+
+/// How the loop went.
+struct Summary {
+    Index iterations = 0;
+    Termination termination = Termination::converged;
+    double gradient_norm = 0;
+    double first_gradient_norm = 0;
+    /// Mean factor per iteration by which the gradient norm fell over the second half of the run; 0
+    /// if too short.
+    double observed_rate = 0;
+};
+
+/// Moves `control` (N x dim) by the method until the stop rule holds: the one loop of all methods.
+Summary iterate(Method& method, PointSet& control, const StopRule& stop,
+                const IterateHooks& hooks = {});
+
+} // namespace batten

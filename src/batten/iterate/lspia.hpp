@@ -1,0 +1,34 @@
+#pragma once
+
+#include <batten/iterate/method.hpp>
+#include <batten/system/normal_system.hpp>
+
+namespace batten {
+
+/// Least-squares progressive-iterative approximation, Delta = mu A^T (Q - A P) [DengLin2014, eq. 5
+/// and 18].
+class Lspia : public Method {
+  public:
+    /// `mu` 0 takes the best one, 2 / (sigma_1^2 + sigma_r^2), from eigenvalues of that relative
+    /// accuracy.
+    explicit Lspia(const NormalSystem& system, double mu = 0, double eigenvalue_tolerance = 1e-2);
+
+    std::string_view name() const override { return "lspia"; }
+    /// Throws InvalidInput unless 0 < mu < 2 / sigma_1^2.
+    void start(const PointSet& control) override;
+    const PointSet& propose(const PointSet& control) override;
+    void accept(const PointSet&) override {}
+    double gradient_norm() const override { return norm_; }
+    Settings settings() const override { return {{"mu", mu_}}; }
+    double predicted_rate() const override { return rate_; }
+
+  private:
+    const NormalSystem& system_;
+    double mu_;
+    double eigenvalue_tolerance_;
+    double rate_ = 0;
+    double norm_ = 0;
+    PointSet moves_;
+};
+
+} // namespace batten

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <batten/core/core.hpp>
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace batten {
+
+/// Named numbers of a method: the weights that it was given or chose.
+using Settings = std::map<std::string, double>;
+
+/// One geometric iteration P <- P + M(W(Q - A P)): proposes moves of the control points (N x dim).
+///
+/// The loop calls start(P^0) once, then per iteration propose(P^k) and, with the moves that were
+/// really made, accept(). A method with memory must remember those, not the ones it proposed.
+class Method {
+  public:
+    virtual ~Method() = default;
+    Method() = default;
+    Method(const Method&) = delete;
+    Method& operator=(const Method&) = delete;
+
+    virtual std::string_view name() const = 0;
+    /// Prepares for the control points P^0; throws InvalidInput when a setting forbids convergence.
+    virtual void start(const PointSet& control) = 0;
+    /// The moves that the method wants at P^k.
+    virtual const PointSet& propose(const PointSet& control) = 0;
+    /// The moves made from P^k to P^{k+1}.
+    virtual void accept(const PointSet& moves) = 0;
+    /// The norm that the stop rule tests, at the control points of the last propose():
+    /// the Frobenius norm of A^T(Q - AP), or of the method's own W(Q - AP) before step factors.
+    virtual double gradient_norm() const = 0;
+    /// The weights in use, known after start().
+    virtual Settings settings() const { return {}; }
+    /// Predicted factor by which the error falls per iteration, 0 when the theory gives none.
+    virtual double predicted_rate() const { return 0; }
+};
+
+} // namespace batten

@@ -1,0 +1,95 @@
+#include <batten/iterate/methods.hpp>
+
+#include <batten/core/names.hpp>
+#include <batten/iterate/conjugate_gradients.hpp>
+#include <batten/iterate/lspia.hpp>
+#include <batten/iterate/mlspia.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace batten {
+
+namespace {
+
+constexpr MethodSetting eigenvalue_setting{
+    "eigenvalue_tolerance", "relative accuracy of the extreme eigenvalues (default 1e-2)"};
+
+const std::vector<MethodEntry>& table() {
+    static const std::vector<MethodEntry> all = {
+        {"auto", "the fastest that answers the question", "", {}},
+        {"direct", "banded Cholesky of the normal equations, axis by axis", "", {}},
+        {"lspia",
+         "least-squares PIA",
+         "Deng, Lin 2014",
+         {{"mu", "step factor (default 2 / (sigma_1^2 + sigma_r^2))"}, eigenvalue_setting}},
+        {"mlspia",
+         "least-squares PIA with memory",
+         "Huang, Wang 2020",
+         {{"omega", "weight omega (default eq. 27, 37)"},
+          {"gamma", "weight gamma (default eq. 27, 37)"},
+          {"nu", "weight nu (default eq. 27, 37)"},
+          eigenvalue_setting}},
+        {"cg",
+         "conjugate gradients, diagonally preconditioned",
+         "Hestenes, Stiefel 1952",
+         {{"plain", "1: without the preconditioner"}}},
+    };
+    return all;
+}
+
+double setting(const Settings& settings, const std::string& name, double otherwise) {
+    const auto found = settings.find(name);
+    return found == settings.end() ? otherwise : found->second;
+}
+
+} // namespace
+
+std::span<const MethodEntry> methods() {
+    return table();
+}
+
+const MethodEntry& method_entry(std::string_view name) {
+    std::vector<std::string_view> names;
+    for (const MethodEntry& entry : table()) {
+        if (entry.name == name) return entry;
+        names.push_back(entry.name);
+    }
+    throw InvalidInput(unknown_name("method", name, names));
+}
+
+void check_settings(const MethodEntry& entry, const Settings& settings) {
+    std::vector<std::string_view> names;
+    for (const MethodSetting& s : entry.settings) names.push_back(s.name);
+    for (const auto& [name, value] : settings) {
+        if (names.empty())
+            throw InvalidInput(
+                fmt::format("method {} has no settings, got '{}'", entry.name, name));
+        if (std::find(names.begin(), names.end(), name) == names.end())
+            throw InvalidInput(
+                unknown_name(fmt::format("setting of method {}", entry.name), name, names));
+        if (!std::isfinite(value))
+            throw InvalidInput(fmt::format("setting {} = {} must be finite", name, value));
+    }
+}
+
+std::unique_ptr<Method> make_method(std::string_view name, const NormalSystem& system,
+                                    const Settings& settings) {
+    check_settings(method_entry(name), settings);
+    const double accuracy = setting(settings, "eigenvalue_tolerance", 1e-2);
+    if (name == "lspia")
+        return std::make_unique<Lspia>(system, setting(settings, "mu", 0), accuracy);
+    if (name == "mlspia") {
+        const MlspiaWeights weights{setting(settings, "omega", 0), setting(settings, "gamma", 0),
+                                    setting(settings, "nu", 0)};
+        return std::make_unique<Mlspia>(system, weights, accuracy);
+    }
+    if (name == "cg")
+        return std::make_unique<ConjugateGradients>(system, setting(settings, "plain", 0) != 0
+                                                                ? Preconditioner::none
+                                                                : Preconditioner::diagonal);
+    throw InvalidInput(fmt::format("method {} is no iteration on the normal equations", name));
+}
+
+} // namespace batten

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <batten/iterate/method.hpp>
+#include <batten/system/normal_system.hpp>
+
+namespace batten {
+
+/// The three weights of MLSPIA; 0 takes the best ones [HuangWang2020, eq. 27; for grids eq. 37].
+struct MlspiaWeights {
+    double omega = 0;
+    double gamma = 0;
+    double nu = 0;
+};
+
+/// Least-squares PIA with memory [HuangWang2020, eq. 1 to 3]:
+/// Delta^k = (1 - omega) Delta^{k-1} + gamma delta^k + (omega - gamma) delta^{k-1}, delta^k = nu
+/// A^T (Q - A P^k).
+class Mlspia : public Method {
+  public:
+    explicit Mlspia(const NormalSystem& system, MlspiaWeights weights = {},
+                    double eigenvalue_tolerance = 1e-2);
+
+    /// Replaces Delta^0 = omega nu A^T (Q - A P^0) (both kinds of initial control points in
+    /// section 6.2) by nu A^T Lambda^0 for a Lambda^0 of the caller's: `moves` (N x dim) is A^T
+    /// Lambda^0.
+    void set_first_moves(PointSet moves) { first_ = std::move(moves); }
+
+    std::string_view name() const override { return "mlspia"; }
+    /// Throws InvalidInput when the weights are outside the convergence region [eq. 11].
+    void start(const PointSet& control) override;
+    const PointSet& propose(const PointSet& control) override;
+    void accept(const PointSet& moves) override;
+    double gradient_norm() const override { return norm_; }
+    Settings settings() const override;
+    double predicted_rate() const override { return rate_; }
+
+    /// Delta^{k-1} and delta^{k-1}, to carry the memory over to another knot vector; empty before
+    /// the first move.
+    const PointSet& last_moves() const { return last_; }
+    const PointSet& last_delta() const { return last_delta_; }
+    /// Continues with memory from an earlier run, (N x dim) each, instead of a fresh start.
+    void resume(PointSet last_moves, PointSet last_delta);
+
+  private:
+    const NormalSystem& system_;
+    MlspiaWeights weights_;
+    double eigenvalue_tolerance_;
+    double rate_ = 0;
+    double norm_ = 0;
+    PointSet first_;
+    PointSet last_;
+    PointSet last_delta_;
+    PointSet delta_;
+    PointSet moves_;
+};
+
+} // namespace batten

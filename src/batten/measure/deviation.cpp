@@ -1,0 +1,57 @@
+#include <batten/measure/deviation.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace batten {
+
+namespace {
+
+constexpr Index chunk_size = 1 << 14;
+
+std::vector<double> lengths(const PointSet& values, const Points& points) {
+    std::vector<double> result(static_cast<std::size_t>(points.size()));
+    for (Index i = 0; i < points.size(); ++i)
+        result[static_cast<std::size_t>(i)] = distance(values[i], points[i]);
+    return result;
+}
+
+} // namespace
+
+std::string_view to_string(DeviationKind kind) {
+    return kind == DeviationKind::parametric ? "parametric" : "distance";
+}
+
+std::vector<double> parametric_deviations(const Spline& spline, const Samples& samples,
+                                          const Parameters& parameters) {
+    if (parameters.is_scattered())
+        return lengths(evaluate(spline, parameters.scattered), samples.points);
+    if (parameters.axes.size() > 1)
+        return lengths(evaluate_grid(spline, parameters.axes), samples.points);
+    std::vector<double> result(static_cast<std::size_t>(samples.size()));
+    const Points parameter(parameters.axes[0].data(), samples.size(), 1);
+    for_each_chunk((samples.size() + chunk_size - 1) / chunk_size, [&](Index chunk) {
+        const Index first = chunk * chunk_size;
+        const Index count = std::min(chunk_size, samples.size() - first);
+        const auto part = lengths(evaluate(spline, parameter.slice(first, count)),
+                                  samples.points.slice(first, count));
+        std::ranges::copy(part, result.begin() + first);
+    });
+    return result;
+}
+
+Deviation summarise(const std::vector<double>& deviations, DeviationKind kind) {
+    Deviation result{.maximum = 0, .rms = 0, .worst_sample = 0, .kind = kind};
+    double sum = 0;
+    for (std::size_t i = 0; i < deviations.size(); ++i) {
+        sum += deviations[i] * deviations[i];
+        if (deviations[i] > result.maximum) {
+            result.maximum = deviations[i];
+            result.worst_sample = static_cast<Index>(i);
+        }
+    }
+    result.rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, deviations.size())));
+    return result;
+}
+
+} // namespace batten

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <batten/samples/samples.hpp>
+
+#include <vector>
+
+namespace batten {
+
+/// Parameters of the samples.
+struct Parameters {
+    /// One ascending array per axis, for a sequence or a grid.
+    std::vector<std::vector<double>> axes;
+    /// (m x axes) for a cloud, else empty.
+    PointSet scattered;
+
+    bool is_scattered() const { return !scattered.empty(); }
+    Index axis_count() const {
+        return is_scattered() ? scattered.dim() : static_cast<Index>(axes.size());
+    }
+};
+
+/// How the parameters follow from the points.
+enum class Parametrization {
+    uniform,     ///< evenly spaced
+    chord,       ///< normalised accumulated chord length [PieglTiller1997, eq. 9.5]
+    centripetal, ///< the same with square roots of the chords [PieglTiller1997, eq. 9.6]
+};
+
+/// Parameters from 0 to 1 of a sequence of at least 2 points. Identical consecutive points get
+/// equal parameters. Closed: the chord from the last point back to the first counts, and 1 stands
+/// for the first point again. Throws InvalidInput when all points are identical (uniform excepted).
+std::vector<double> parametrize_sequence(const Points& points, Parametrization rule,
+                                         Closure closure = Closure::open);
+
+/// Parameters of a sequence, or of a grid: along each axis the normalised parameters of its rows,
+/// averaged [LinZhang2011, eq. 27 and 28]; rows of no length do not count.
+/// `closures` has one entry per axis. Throws InvalidInput as above, naming the axis.
+Parameters parametrize(const Samples& samples, Parametrization rule,
+                       const std::vector<Closure>& closures);
+
+/// Throws InvalidInput unless the parameters fit the samples in number and are finite, ascending
+/// and, per axis, not all equal.
+void check(const Parameters& parameters, const Samples& samples);
+
+} // namespace batten

@@ -1,0 +1,70 @@
+#include <batten/fit/report.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace batten {
+
+namespace {
+
+std::string percentage(double part, double whole) {
+    return whole > 0 ? fmt::format("{:.3g} % of the data's size", 100 * part / whole)
+                     : std::string("the data have no size");
+}
+
+std::string closed_axes(const std::vector<Closure>& closures) {
+    std::vector<std::size_t> closed;
+    for (std::size_t k = 0; k < closures.size(); ++k)
+        if (closures[k] == Closure::closed) closed.push_back(k);
+    if (closed.empty()) return "";
+    return closures.size() == 1 ? ", closed"
+                                : fmt::format(", closed along axis {}", fmt::join(closed, ", "));
+}
+
+} // namespace
+
+double FitReport::total_seconds() const {
+    double total = 0;
+    for (const auto& [stage, time] : seconds) total += time;
+    return total;
+}
+
+std::string FitReport::brief() const {
+    std::vector<Index> shape = control_shape;
+    for (std::size_t k = 0; k < shape.size(); ++k)
+        if (closures[k] == Closure::closed) shape[k] -= degree[k];
+    return fmt::format(
+        "{} of degree {}, {} control points{}: {} samples within {:.4g} (rms {:.4g}), {}", kind,
+        fmt::join(degree, "x"), fmt::join(shape, "x"), closed_axes(closures), samples,
+        deviation.maximum, deviation.rms, to_string(termination));
+}
+
+std::string FitReport::full() const {
+    std::string text = brief() + "\n";
+    const auto line = [&](std::string_view name, const std::string& value) {
+        text += fmt::format("  {:<12}{}\n", name, value);
+    };
+    line("deviation", fmt::format("largest {:.6g} at sample {} ({}), {}", deviation.maximum,
+                                  deviation.worst_sample, to_string(deviation.kind),
+                                  percentage(deviation.maximum, data_size)));
+    line("method", method_reason.empty() ? method : fmt::format("{} ({})", method, method_reason));
+    if (method != "direct") {
+        std::string chosen;
+        for (const auto& [name, value] : settings)
+            chosen += fmt::format("{}{} = {:.12g}", chosen.empty() ? "" : ", ", name, value);
+        if (!chosen.empty()) line("settings", chosen);
+        line("iterations", fmt::format("{}, gradient {:.3g} of {:.3g} at the start", iterations,
+                                       gradient_norm, first_gradient_norm));
+        if (predicted_rate > 0 && observed_rate > 0)
+            line("rate", fmt::format("{:.4f} per iteration observed, {:.4f} predicted",
+                                     observed_rate, predicted_rate));
+    }
+    std::string stages;
+    for (const auto& [stage, time] : seconds)
+        stages += fmt::format("{}{} {:.2g}", stages.empty() ? "" : ", ", stage, time);
+    line("seconds", fmt::format("{:.3g} ({})", total_seconds(), stages));
+    for (const std::string& note : notes) line("note", note);
+    return text;
+}
+
+} // namespace batten

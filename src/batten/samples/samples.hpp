@@ -1,0 +1,44 @@
+#pragma once
+
+#include <batten/core/core.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace batten {
+
+/// Data points as a user brings them: a sequence, or a grid of 2 or 3 axes, or (with given
+/// parameters) a cloud.
+struct Samples {
+    /// (m x dim), dim 1 to 16; of a grid row-major, last axis fastest.
+    Points points;
+    /// Samples per axis of a grid (2 or 3 entries, product m); empty for a sequence or a cloud.
+    std::vector<Index> grid;
+    /// One positive weight per sample, or empty when all are one.
+    std::vector<double> weights;
+    /// What was done to the data on the way in, one sentence each; shown in the report.
+    std::vector<std::string> notes;
+
+    Index size() const { return points.size(); }
+    Index dim() const { return points.dim(); }
+    Index axis_count() const { return grid.empty() ? 1 : static_cast<Index>(grid.size()); }
+    /// Samples along each axis: the grid's shape, or {m}.
+    std::vector<Index> shape() const { return grid.empty() ? std::vector<Index>{size()} : grid; }
+};
+
+/// Throws InvalidInput when there are no samples, dim is outside 1 to 16, the grid's shape does not
+/// match, a coordinate is not finite (the sample is named) or a weight is not positive and finite.
+void check(const Samples& samples);
+
+/// Makes the grid of heights h(i, j) (m1 x m2, one coordinate) the points (i dx, j dy, h).
+Samples height_samples(const Points& heights, std::array<Index, 2> shape,
+                       std::array<double, 2> spacing);
+
+/// Lower and upper corner of the axis-parallel box of the points: (2 x dim).
+PointSet bounding_box(const Points& points);
+
+/// Length of the bounding box's diagonal, the size of the data.
+double diagonal(const Points& points);
+
+} // namespace batten

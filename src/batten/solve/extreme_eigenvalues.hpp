@@ -1,0 +1,26 @@
+#pragma once
+
+#include <batten/system/normal_system.hpp>
+
+#include <functional>
+
+namespace batten {
+
+/// The largest and the smallest non-zero eigenvalue of a symmetric positive semidefinite matrix.
+struct ExtremeEigenvalues {
+    double largest = 0;
+    double smallest = 0;
+};
+
+/// y = M x for vectors of the matrix's size.
+using VectorOperator = std::function<void(const std::vector<double>& x, std::vector<double>& y)>;
+
+/// Extreme eigenvalues to a relative error of about `tolerance` by the Lanczos method with full
+/// reorthogonalisation, from a fixed start in the matrix's range (so zero eigenvalues are not
+/// seen).
+ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tolerance);
+
+/// Those of A^T D A: of each banded factor, multiplied, where the system has factors.
+ExtremeEigenvalues extreme_eigenvalues(const NormalSystem& system, double tolerance = 1e-2);
+
+} // namespace batten

@@ -1,0 +1,48 @@
+#include <batten/system/banded_matrix.hpp>
+
+#include <algorithm>
+
+namespace batten {
+
+BandedMatrix::BandedMatrix(Index size, int bandwidth, Closure closure)
+    : size_(size),
+      bandwidth_(bandwidth),
+      closure_(closure),
+      values_(static_cast<std::size_t>(size * (bandwidth + 1))) {}
+
+namespace {
+
+void add_row(double* y, double factor, const double* x, Index count) {
+    for (Index k = 0; k < count; ++k) y[k] += factor * x[k];
+}
+
+} // namespace
+
+void BandedMatrix::apply(const double* x, double* y, AxisLayout layout) const {
+    const Index inner = layout.inner;
+    std::fill(y, y + layout.outer * size_ * inner, 0.0);
+    for_each_chunk(layout.outer, [&](Index o) {
+        const double* in = x + o * size_ * inner;
+        double* out = y + o * size_ * inner;
+        for (Index i = 0; i < size_; ++i) {
+            add_row(out + i * inner, at(i, 0), in + i * inner, inner);
+            for (int k = 1; k <= bandwidth_; ++k) {
+                Index j = i + k;
+                if (j >= size_) {
+                    if (closure_ == Closure::open) break;
+                    j -= size_;
+                }
+                add_row(out + i * inner, at(i, k), in + j * inner, inner);
+                add_row(out + j * inner, at(i, k), in + i * inner, inner);
+            }
+        }
+    });
+}
+
+std::vector<double> BandedMatrix::diagonal() const {
+    std::vector<double> result;
+    for (Index i = 0; i < size_; ++i) result.push_back(at(i, 0));
+    return result;
+}
+
+} // namespace batten

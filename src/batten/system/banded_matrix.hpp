@@ -1,0 +1,46 @@
+#pragma once
+
+#include <batten/core/core.hpp>
+
+#include <vector>
+
+namespace batten {
+
+/// A block of values seen as (outer x n x inner), row-major: an array of several axes with one
+/// singled out.
+struct AxisLayout {
+    Index outer = 1;
+    Index inner = 1;
+};
+
+/// Symmetric banded matrix (n x n): entries (i, i + k) for k = 0 to the bandwidth; i + k goes
+/// around the end when the axis is closed.
+class BandedMatrix {
+  public:
+    BandedMatrix() = default;
+    BandedMatrix(Index size, int bandwidth, Closure closure);
+
+    Index size() const { return size_; }
+    int bandwidth() const { return bandwidth_; }
+    Closure closure() const { return closure_; }
+    /// Entry (i, i + k), 0 <= k <= bandwidth. On a closed axis several (i, k) may mean one entry:
+    /// they add up.
+    double& at(Index i, int k) {
+        return values_[static_cast<std::size_t>(i * (bandwidth_ + 1) + k)];
+    }
+    double at(Index i, int k) const {
+        return values_[static_cast<std::size_t>(i * (bandwidth_ + 1) + k)];
+    }
+
+    /// y = M x along one axis, x and y (outer x n x inner).
+    void apply(const double* x, double* y, AxisLayout layout) const;
+    std::vector<double> diagonal() const;
+
+  private:
+    Index size_ = 0;
+    int bandwidth_ = 0;
+    Closure closure_ = Closure::open;
+    std::vector<double> values_;
+};
+
+} // namespace batten

@@ -1,0 +1,129 @@
+#include <batten/system/collocation.hpp>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace batten {
+
+Collocation::Collocation(const KnotVector& knots, std::span<const double> parameters)
+    : degree_(knots.degree()), columns_(knots.free_count()) {
+    const auto width = static_cast<std::size_t>(degree_ + 1);
+    first_.resize(parameters.size());
+    values_.resize(parameters.size() * width);
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+        const double t = knots.wrapped(parameters[j]);
+        if (!(t >= knots.begin() && t <= knots.end()))
+            throw InvalidInput(
+                fmt::format("parameter {} = {} is outside the knots' domain [{}, {}]", j, t,
+                            knots.begin(), knots.end()));
+        const Index span = knots.span(t);
+        first_[j] = span - degree_;
+        if (first_[j] >= columns_) first_[j] -= columns_;
+        std::copy_n(basis_values(knots, span, t).begin(), width,
+                    values_.begin() + static_cast<Index>(j * width));
+    }
+}
+
+PointSet Collocation::apply(const PointSet& x) const {
+    PointSet y(rows(), x.dim());
+    for (Index j = 0; j < rows(); ++j)
+        for (int r = 0; r <= degree_; ++r) {
+            const double w = value(j, r);
+            const auto in = x[column(j, r)];
+            for (Index d = 0; d < x.dim(); ++d) y(j, d) += w * in[static_cast<std::size_t>(d)];
+        }
+    return y;
+}
+
+PointSet Collocation::apply_transposed(const PointSet& y) const {
+    PointSet x(columns_, y.dim());
+    for (Index j = 0; j < rows(); ++j)
+        for (int r = 0; r <= degree_; ++r) {
+            const double w = value(j, r);
+            const Index c = column(j, r);
+            for (Index d = 0; d < y.dim(); ++d) x(c, d) += w * y(j, d);
+        }
+    return x;
+}
+
+namespace {
+
+/// Matches control points to distinct samples inside their supports, greedily in order; -1 when all
+/// n are matched, else the first that finds none. Greedy is exact as supports and samples both
+/// ascend.
+Index first_unmatched(const KnotVector& knots, const std::vector<double>& distinct) {
+    std::size_t j = 0;
+    for (Index i = 0; i < knots.control_count(); ++i) {
+        const double low = knots[i];
+        const double high = knots[i + knots.degree() + 1];
+        const bool at_begin = low == knots.begin() && knots[i + knots.degree()] == low;
+        const bool at_end = high == knots.end() && knots[i + 1] == high;
+        while (j < distinct.size() && (at_begin ? distinct[j] < low : distinct[j] <= low)) ++j;
+        if (j == distinct.size() || (at_end ? distinct[j] > high : distinct[j] >= high)) return i;
+        ++j;
+    }
+    return -1;
+}
+
+/// On a closed axis the conditions must hold for some rotation: n consecutive samples (over the
+/// seam, too) with the i-th inside the support of B_i for every i.
+bool closed_matched(const KnotVector& knots, const std::vector<double>& distinct) {
+    const Index n = knots.free_count();
+    const auto m = static_cast<Index>(distinct.size());
+    const auto sample = [&](Index k) { // over three periods, the middle one being the domain
+        return distinct[static_cast<std::size_t>(k % m)] +
+               static_cast<double>(k / m - 1) * knots.length();
+    };
+    for (Index start = 0; start < 2 * m && sample(start) < knots[knots.degree() + 1]; ++start) {
+        if (sample(start) <= knots[0]) continue;
+        Index at = start;
+        Index i = 0;
+        for (; i < n; ++i, ++at) {
+            while (at < start + m && sample(at) <= knots[i]) ++at;
+            if (at == start + m || sample(at) >= knots[i + knots.degree() + 1]) break;
+        }
+        if (i == n) return true;
+    }
+    return false;
+}
+
+std::string spans_without(const KnotVector& knots, const std::vector<double>& distinct) {
+    std::vector<std::string> spans;
+    const std::vector<double> breaks = knots.breakpoints();
+    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+        const bool last = k + 2 == breaks.size();
+        const auto first = std::ranges::lower_bound(distinct, breaks[k]);
+        if (first != distinct.end() &&
+            (*first < breaks[k + 1] || (last && *first == breaks[k + 1])))
+            continue;
+        if (spans.size() == 3) {
+            spans.emplace_back("...");
+            break;
+        }
+        spans.push_back(fmt::format("[{:.6g}, {:.6g}]", breaks[k], breaks[k + 1]));
+    }
+    if (spans.empty())
+        return fmt::format("too few distinct parameters for {} control points", knots.free_count());
+    return fmt::format("no samples in knot span{} {}", spans.size() > 1 ? "s" : "",
+                       fmt::join(spans, ", "));
+}
+
+} // namespace
+
+std::optional<std::string> undetermined(const KnotVector& knots,
+                                        std::span<const double> parameters) {
+    std::vector<double> distinct;
+    for (double t : parameters) distinct.push_back(knots.wrapped(t));
+    if (knots.closed()) {
+        for (double& t : distinct)
+            if (t == knots.end()) t = knots.begin();
+        std::ranges::sort(distinct);
+    }
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    if (knots.closed() ? closed_matched(knots, distinct) : first_unmatched(knots, distinct) < 0)
+        return std::nullopt;
+    return spans_without(knots, distinct);
+}
+
+} // namespace batten

@@ -1,0 +1,64 @@
+#include <batten/system/normal_system.hpp>
+
+#include <batten/system/factored_system.hpp>
+
+#include <fmt/format.h>
+
+namespace batten {
+
+namespace {
+
+Index free_total(const std::vector<KnotVector>& axes) {
+    Index total = 1;
+    for (Index n : free_shape(axes)) total *= n;
+    return total;
+}
+
+PointSet shifted(const PointSet& control, const std::vector<double>& centre, double sign) {
+    PointSet result = control;
+    for (Index i = 0; i < result.size(); ++i)
+        for (Index d = 0; d < result.dim(); ++d)
+            result(i, d) += sign * centre[static_cast<std::size_t>(d)];
+    return result;
+}
+
+} // namespace
+
+NormalSystem::NormalSystem(std::vector<KnotVector> axes, std::vector<double> centre)
+    : axes_(std::move(axes)),
+      centre_(std::move(centre)),
+      rhs_(free_total(axes_), static_cast<Index>(centre_.size())) {}
+
+PointSet NormalSystem::gradient(const PointSet& control) const {
+    PointSet result(size(), dim());
+    apply(control, result);
+    for (std::size_t k = 0; k < result.values().size(); ++k)
+        result.values()[k] = rhs_.values()[k] - result.values()[k];
+    return result;
+}
+
+double NormalSystem::energy(const PointSet& control) const {
+    // E(P) - E(0) = -<P, rhs + gradient(P)>
+    PointSet sum = gradient(control);
+    add_scaled(sum, 1.0, rhs_);
+    return -inner_product(control, sum);
+}
+
+std::unique_ptr<NormalSystem> assemble(const std::vector<KnotVector>& axes, const Samples& samples,
+                                       const Parameters& parameters) {
+    const auto origin = samples.points[0];
+    auto system = std::make_unique<FactoredSystem>(
+        axes, std::vector<double>(origin.begin(), origin.end()), parameters);
+    system->add(0, samples.points, samples.weights);
+    system->finish();
+    return system;
+}
+
+PointSet centred(const PointSet& control, const std::vector<double>& centre) {
+    return shifted(control, centre, -1);
+}
+PointSet uncentred(const PointSet& control, const std::vector<double>& centre) {
+    return shifted(control, centre, 1);
+}
+
+} // namespace batten

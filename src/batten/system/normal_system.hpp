@@ -1,0 +1,69 @@
+#pragma once
+
+#include <batten/parametrize/parametrize.hpp>
+#include <batten/spline/spline.hpp>
+#include <batten/system/banded_matrix.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace batten {
+
+/// The normal equations A^T D A P = A^T D Q of a weighted least-squares fit, D the sample weights.
+///
+/// Built in one pass over the samples; afterwards everything costs O(control points). Coordinates
+/// are relative to centre(), as B-splines sum to one a shift of data and control points changes
+/// nothing else.
+class NormalSystem {
+  public:
+    virtual ~NormalSystem() = default;
+    NormalSystem(const NormalSystem&) = delete;
+    NormalSystem& operator=(const NormalSystem&) = delete;
+
+    /// Free control points N of the spline.
+    Index size() const { return rhs_.size(); }
+    Index dim() const { return rhs_.dim(); }
+    /// A^T D (Q - centre): (N x dim).
+    const PointSet& rhs() const { return rhs_; }
+    const std::vector<double>& centre() const { return centre_; }
+    const std::vector<KnotVector>& axes() const { return axes_; }
+
+    /// y = A^T D A x; x and y (N x dim) for any dim.
+    virtual void apply(const PointSet& x, PointSet& y) const = 0;
+    /// Diagonal of A^T D A.
+    virtual std::vector<double> diagonal() const = 0;
+    /// The banded factors whose Kronecker product A^T D A is, one per axis; none for scattered
+    /// samples.
+    virtual std::vector<const BandedMatrix*> factors() const { return {}; }
+
+    /// The gradient A^T D (Q - A P) at control points relative to the centre.
+    PointSet gradient(const PointSet& control) const;
+    /// Sum over the samples of weight |Q - A P|^2, up to the sum of weight |Q - centre|^2 that
+    /// `data_energy` is. It cancels for a close fit: for a reported residual measure the deviation
+    /// of the data instead.
+    double energy(const PointSet& control) const;
+    double data_energy() const { return data_energy_; }
+    /// Samples added so far.
+    Index sample_count() const { return sample_count_; }
+
+  protected:
+    NormalSystem(std::vector<KnotVector> axes, std::vector<double> centre);
+
+    std::vector<KnotVector> axes_;
+    std::vector<double> centre_;
+    PointSet rhs_;
+    double data_energy_ = 0;
+    Index sample_count_ = 0;
+};
+
+/// Assembles the normal system of the samples in one pass; the centre is the first sample.
+/// Sequences and unweighted grids give the Kronecker product of banded matrices, all else the
+/// stencil form. Throws InvalidInput when a parameter is outside the knots' domain.
+std::unique_ptr<NormalSystem> assemble(const std::vector<KnotVector>& axes, const Samples& samples,
+                                       const Parameters& parameters);
+
+/// Control points relative to `centre`, and back.
+PointSet centred(const PointSet& control, const std::vector<double>& centre);
+PointSet uncentred(const PointSet& control, const std::vector<double>& centre);
+
+} // namespace batten
