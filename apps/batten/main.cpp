@@ -4,6 +4,7 @@
 #include <batten/core/errors.hpp>
 #include <batten/core/names.hpp>
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace {
@@ -44,9 +45,11 @@ std::vector<std::string> candidates(const CLI::App& app, const std::string& word
 
 std::string words_for(const CLI::ParseError& error, const CLI::App& app) {
     const std::string what = error.what();
-    if (error.get_name() != "ExtrasError") return what.substr(0, what.find('\n'));
+    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return what.substr(0, what.find('\n'));
     const std::vector<std::string> extra = app.remaining(true);
-    const std::string word = extra.empty() ? "" : extra.front().substr(0, extra.front().find('='));
+    const auto flag = std::ranges::find_if(extra, [](const std::string& text) { return text.starts_with("-"); });
+    const std::string whole = extra.empty() ? "" : flag == extra.end() ? extra.front() : *flag;
+    const std::string word = whole.substr(0, whole.find('='));
     const std::vector<std::string> names = candidates(app, word);
     const std::vector<std::string_view> views(names.begin(), names.end());
     const std::string_view near = nearest_name(word, views);

@@ -15,14 +15,14 @@ namespace batten {
 struct ShapeOptions {
     std::vector<int> degree{3};
     /// Free control points per axis.
-    std::vector<Index> control_points;
+    std::vector<Index> control_points{};
     std::vector<Closure> closures{Closure::open};
     Parametrization parametrization = Parametrization::chord;
     /// Given parameters, in place of `parametrization`.
-    std::optional<Parameters> parameters;
+    std::optional<Parameters> parameters{};
     KnotPlacement placement = KnotPlacement::data;
     /// Given knots per axis, in place of `placement` and `control_points`.
-    std::vector<std::vector<double>> knots;
+    std::vector<std::vector<double>> knots{};
 };
 
 /// Where an iteration starts.
@@ -36,25 +36,25 @@ struct MethodOptions {
     /// One of methods().
     std::string name = "auto";
     /// The method's own numbers.
-    Settings settings;
+    Settings settings{};
     Initial initial = Initial::data;
     /// (N x dim) free control points, for Initial::given.
-    PointSet control;
+    PointSet control{};
 };
 
 /// Everything a fit can be told; the defaults are what `batten fit` does.
 struct FitOptions {
-    ShapeOptions shape;
-    MethodOptions method;
-    StopRule stop;
+    ShapeOptions shape{};
+    MethodOptions method{};
+    StopRule stop{};
     /// Keep an entry per iteration in the report.
     bool keep_history = false;
     /// Threads for all passes; 0 takes every core. Results do not depend on it.
     int threads = 0;
     /// Asked now and then; true ends the fit with Cancelled, or inside an iteration as
     /// Termination::cancelled.
-    std::function<bool()> cancelled;
-    Observer observer;
+    std::function<bool()> cancelled{};
+    Observer observer{};
 };
 
 } // namespace batten

@@ -11,7 +11,7 @@ namespace batten {
 /// How a file of numbers becomes samples.
 struct ReadOptions {
     /// Grid shape of a list of points; a .npy of 3 or 4 axes brings its own.
-    std::vector<Index> grid;
+    std::vector<Index> grid{};
     /// The table is a grid of heights, sample (i, j) the point (i dx, j dy, h).
     bool heights = false;
     std::array<double, 2> spacing{1, 1};

@@ -17,7 +17,7 @@ namespace batten {
 struct Scene {
     const Spline& spline;
     const Samples* samples = nullptr;
-    std::string title;
+    std::string title{};
 };
 
 /// A file format of splines, found by its extension (with the dot, lower case).

@@ -51,9 +51,9 @@ using DeviationMeasure = std::function<double(const PointSet&)>;
 
 /// Optional parts of the loop.
 struct IterateHooks {
-    Observer observer;
-    StepLimit limit;
-    DeviationMeasure deviation; ///< needed when StopRule::deviation is not 0
+    Observer observer{};
+    StepLimit limit{};
+    DeviationMeasure deviation{}; ///< needed when StopRule::deviation is not 0
 };
 
 /// How the loop went.

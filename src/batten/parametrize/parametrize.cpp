@@ -119,7 +119,7 @@ void check_scattered(const Parameters& parameters, const Samples& samples) {
 
 std::vector<double> parametrize_sequence(const Points& points, Parametrization rule,
                                          Closure closure) {
-    return averaged({.points = points, .grid = {}, .weights = {}, .notes = {}}, 0, rule, closure);
+    return averaged({.points = points}, 0, rule, closure);
 }
 
 Parameters parametrize(const Samples& samples, Parametrization rule,

@@ -9,9 +9,9 @@ namespace batten {
 /// Parameters of the samples.
 struct Parameters {
     /// One ascending array per axis, for a sequence or a grid.
-    std::vector<std::vector<double>> axes;
+    std::vector<std::vector<double>> axes{};
     /// (m x axes) for a cloud, else empty.
-    PointSet scattered;
+    PointSet scattered{};
 
     bool is_scattered() const { return !scattered.empty(); }
     Index axis_count() const {

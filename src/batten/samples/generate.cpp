@@ -19,7 +19,7 @@ double evenly(Index i, Index count, double a, double b) {
 }
 
 Samples curve(PointSet points) {
-    return {.points = std::move(points), .grid = {}, .weights = {}, .notes = {}};
+    return {.points = std::move(points)};
 }
 
 /// r = sin(theta / 4), theta uniform on [0, 8 pi]: [HuangWang2020, Example 3].
@@ -82,7 +82,7 @@ Samples peaks(std::vector<Index> size) {
             points(k, 1) = y;
             points(k, 2) = peaks_height(x, y);
         }
-    return {.points = std::move(points), .grid = size, .weights = {}, .notes = {}};
+    return {.points = std::move(points), .grid = size};
 }
 
 Samples torus(std::vector<Index> size) {
@@ -96,7 +96,7 @@ Samples torus(std::vector<Index> size) {
             points(k, 1) = (3 + std::cos(v)) * std::sin(u);
             points(k, 2) = std::sin(v);
         }
-    return {.points = std::move(points), .grid = size, .weights = {}, .notes = {}};
+    return {.points = std::move(points), .grid = size};
 }
 
 /// A block bent and swollen: a volume with curved faces.
@@ -112,7 +112,7 @@ Samples bent_block(std::vector<Index> size) {
                 points(at, 1) = radius * std::sin(angle);
                 points(at, 2) = evenly(k, size[2], 0, 1) * (1 + 0.3 * std::sin(2 * angle));
             }
-    return {.points = std::move(points), .grid = size, .weights = {}, .notes = {}};
+    return {.points = std::move(points), .grid = size};
 }
 
 const std::vector<Generator>& table() {

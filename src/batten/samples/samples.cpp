@@ -89,7 +89,7 @@ Samples height_samples(const Points& heights, std::array<Index, 2> shape,
             points(k, 1) = static_cast<double>(j) * spacing[1];
             points(k, 2) = heights(k, 0);
         }
-    return {.points = std::move(points), .grid = {shape[0], shape[1]}, .weights = {}, .notes = {}};
+    return {.points = std::move(points), .grid = {shape[0], shape[1]}};
 }
 
 PointSet bounding_box(const Points& points) {

@@ -12,13 +12,13 @@ namespace batten {
 /// parameters) a cloud.
 struct Samples {
     /// (m x dim), dim 1 to 16; of a grid row-major, last axis fastest.
-    Points points;
+    Points points{};
     /// Samples per axis of a grid (2 or 3 entries, product m); empty for a sequence or a cloud.
-    std::vector<Index> grid;
+    std::vector<Index> grid{};
     /// One positive weight per sample, or empty when all are one.
-    std::vector<double> weights;
+    std::vector<double> weights{};
     /// What was done to the data on the way in, one sentence each; shown in the report.
-    std::vector<std::string> notes;
+    std::vector<std::string> notes{};
 
     Index size() const { return points.size(); }
     Index dim() const { return points.dim(); }

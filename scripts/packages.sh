@@ -1,0 +1,40 @@
+# Debian packages, one list each for building and for testing; sourced by the scripts beside it.
+
+build_packages="g++ cmake ninja-build libeigen3-dev libtbb-dev libfmt-dev nlohmann-json3-dev libcli11-dev"
+test_packages="libgtest-dev python3 python3-numpy python3-scipy"
+
+# Installs those of the named packages that are missing, or says the one line that would.
+need() {
+    local missing=() package
+    for package in "$@"; do
+        dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+    done
+    [ ${#missing[@]} -eq 0 ] && return
+    local line="apt-get install -y --no-install-recommends ${missing[*]}"
+    local as=()
+    if [ "$(id -u)" -ne 0 ]; then
+        if ! command -v sudo >/dev/null || ! sudo -n true 2>/dev/null; then
+            echo "missing packages; run as root:  $line" >&2
+            exit 1
+        fi
+        as=(sudo)
+    fi
+    echo "installing: ${missing[*]}"
+    export DEBIAN_FRONTEND=noninteractive
+    if ! { "${as[@]}" apt-get update -qq && "${as[@]}" $line -qq >/dev/null; }; then
+        echo "the packages could not be installed; run as root:  apt-get update && $line" >&2
+        exit 1
+    fi
+}
+
+# Configures and builds a preset, silent unless something is wrong.
+build() {
+    local preset=$1 log
+    log=$(mktemp)
+    if ! { cmake --preset "$preset" "${@:2}" && cmake --build "build/$preset"; } >"$log" 2>&1; then
+        tail -n 60 "$log" >&2
+        rm -f "$log"
+        exit 1
+    fi
+    rm -f "$log"
+}

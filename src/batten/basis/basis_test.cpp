@@ -1,0 +1,119 @@
+#include "problems.hpp"
+
+namespace batten {
+namespace {
+
+using testing::basis_by_recursion;
+using testing::message_of;
+
+TEST(Basis, agrees_with_the_recursive_definition_for_every_degree) {
+    for (int p = 1; p <= max_degree; ++p) {
+        const KnotVector k = knots_from_parameters(testing::random_parameters(60, 7), p, p + 8);
+        for (double t : testing::random_parameters(40, 11)) {
+            const Index span = k.span(t);
+            const BasisValues value = basis_values(k, span, t);
+            double sum = 0;
+            for (int r = 0; r <= p; ++r) {
+                const double v = value[static_cast<std::size_t>(r)];
+                sum += v;
+                EXPECT_NEAR(v, basis_by_recursion(k, span - p + r, p, t), 1e-13)
+                    << "degree " << p << " t " << t;
+            }
+            EXPECT_NEAR(sum, 1, 1e-14); // partition of unity
+        }
+    }
+}
+
+TEST(Basis, derivatives_agree_with_divided_differences) {
+    const KnotVector k = uniform_knots(5, 9, 0, 2);
+    const double t = 0.77;
+    const double h = 1e-5;
+    const Index span = k.span(t);
+    for (int order = 1; order <= 5; ++order) {
+        const BasisValues exact = basis_derivatives(k, span, t, order);
+        const BasisValues above = basis_derivatives(k, span, t + h, order - 1);
+        const BasisValues below = basis_derivatives(k, span, t - h, order - 1);
+        for (std::size_t r = 0; r <= 5; ++r) {
+            const double scale = 1 + std::abs(exact[r]);
+            EXPECT_NEAR(exact[r], (above[r] - below[r]) / (2 * h),
+                        1e-6 * scale * std::pow(8.0, order))
+                << order; // O(h^2) of the next two derivatives
+        }
+    }
+    EXPECT_EQ(basis_derivatives(k, span, t, 6)[0], 0);
+}
+
+TEST(Basis, the_derivatives_of_all_b_splines_sum_to_zero) {
+    const KnotVector k = knots_from_parameters(testing::random_parameters(50, 3), 4, 12);
+    for (double t : testing::random_parameters(30, 5)) {
+        double sum = 0;
+        for (double v : basis_derivatives(k, k.span(t), t, 1)) sum += v;
+        EXPECT_NEAR(sum, 0, 1e-10);
+    }
+}
+
+TEST(Knots, follow_equation_9_69) {
+    // m + 1 = 10 parameters, degree 3, n + 1 = 6 control points: d = 10 / 3, interior knots at j d
+    std::vector<double> t{0, 0.1, 0.2, 0.3, 0.45, 0.5, 0.6, 0.75, 0.9, 1};
+    const KnotVector k = knots_from_parameters(t, 3, 6);
+    ASSERT_EQ(k.knots().size(), 10U);
+    EXPECT_DOUBLE_EQ(k[4], (1 - 1.0 / 3) * 0.2 + 1.0 / 3 * 0.3); // 3.333: between t_2 and t_3
+    EXPECT_DOUBLE_EQ(k[5], (1 - 2.0 / 3) * 0.5 + 2.0 / 3 * 0.6); // 6.667: between t_5 and t_6
+}
+
+TEST(Knots, a_closed_axis_is_periodic_and_wraps) {
+    const KnotVector k = uniform_knots(3, 7, 0, 1, Closure::closed);
+    EXPECT_EQ(k.control_count(), 10);
+    EXPECT_EQ(k.free_count(), 7);
+    EXPECT_DOUBLE_EQ(k.begin(), 0);
+    EXPECT_DOUBLE_EQ(k.end(), 1);
+    EXPECT_NEAR(k.wrapped(1.25), 0.25, 1e-15);
+    EXPECT_NEAR(k.wrapped(-0.25), 0.75, 1e-15);
+}
+
+TEST(Knots, span_at_the_ends_has_length) {
+    const KnotVector k = uniform_knots(3, 6, 0, 3);
+    EXPECT_EQ(k.span(0), 3);
+    EXPECT_EQ(k.span(3), 5);
+    EXPECT_EQ(k.span(-1), 3);
+    EXPECT_EQ(k.span(4), 5);
+    EXPECT_EQ(k.span(1), 4);
+}
+
+TEST(Knots, refuse_what_breaks_a_rule) {
+    EXPECT_EQ(message_of<InvalidInput>([] {
+                  KnotVector(3, {0, 0, 0, 0, 1, 1, 1});
+              }),
+              "degree 3 needs at least 4 control points, 7 knots make 3");
+    EXPECT_EQ(message_of<InvalidInput>([] { KnotVector(10, std::vector<double>(30, 0)); }),
+              "degree 10 is outside 1 to 9");
+    EXPECT_EQ(message_of<InvalidInput>([] {
+                  KnotVector(1, {0, 0, 0.7, 0.5, 1, 1});
+              }),
+              "knots must ascend: knot 3 = 0.5 is less than knot 2 = 0.7");
+    EXPECT_EQ(message_of<InvalidInput>([] {
+                  KnotVector(1, {0, 0, NAN, 1, 1});
+              }),
+              "knot 2 is not a finite number");
+    EXPECT_EQ(message_of<InvalidInput>([] {
+                  KnotVector(1, {0, 0, 0, 0});
+              }),
+              "the knots' domain [0, 0] has no length");
+    EXPECT_EQ(message_of<InvalidInput>([] {
+                  KnotVector(1, {0, 0, 0.5, 0.5, 1, 1});
+              }),
+              "knot 2 = 0.5 has a multiplicity above the degree 1: the spline would break there");
+    EXPECT_EQ(message_of<InvalidInput>([] {
+                  KnotVector(1, {-0.5, 0, 0.25, 1, 1.5}, Closure::closed);
+              }),
+              "closed axis: knot 2 = 0.25 must be knot 0 + the period = 0.5");
+    EXPECT_EQ(message_of<InvalidInput>([] {
+                  knots_from_parameters(std::vector<double>{0, 1, 2}, 1, 5);
+              }),
+              "5 control points need at least as many samples, got 3");
+    EXPECT_EQ(message_of<InvalidInput>([] { uniform_knots(3, 3, 0, 1); }),
+              "degree 3 needs at least 4 control points, got 3");
+}
+
+} // namespace
+} // namespace batten

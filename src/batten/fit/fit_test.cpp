@@ -1,0 +1,209 @@
+#include "problems.hpp"
+
+namespace batten {
+namespace {
+
+using testing::largest_difference;
+using testing::message_of;
+using testing::random_points;
+using testing::sequence;
+
+FitOptions size(std::vector<Index> n) {
+    FitOptions options;
+    options.shape.control_points = std::move(n);
+    return options;
+}
+
+TEST(Fit, reproduces_a_spline_of_its_own_space_for_every_degree_and_dimension) {
+    for (int p = 1; p <= max_degree; ++p) {
+        const Index dim = 1 + (p * 5) % 16;
+        const KnotVector k = uniform_knots(p, p + 7, 0, 1);
+        const Spline truth({k}, random_points(p + 7, dim, 3));
+        Parameters t{{testing::random_parameters(400, 4)}, {}};
+        FitOptions options;
+        options.shape.degree = {p};
+        options.shape.parameters = t;
+        options.shape.knots = {{k.knots().begin(), k.knots().end()}};
+        const FitResult result = fit(sequence(evaluate_grid(truth, t.axes)), options);
+        EXPECT_LT(largest_difference(result.spline.control_points(), truth.control_points()),
+                  1e-6 * std::pow(2.5, p - 5))
+            << p; // condition grows with the degree
+        EXPECT_LT(result.report.deviation.maximum, 1e-12);
+    }
+}
+
+TEST(Fit, all_methods_leave_the_same_residual) {
+    for (const char* name : {"rose", "peaks"}) {
+        const Samples samples = generate(name);
+        double reference = 0;
+        for (const char* method : {"direct", "lspia", "mlspia", "cg"}) {
+            FitOptions options =
+                size(samples.grid.empty() ? std::vector<Index>{60} : std::vector<Index>{20, 24});
+            options.method.name = method;
+            options.stop = {.max_iterations = 200000, .relative_gradient = 1e-12};
+            const double rms = fit(samples, options).report.deviation.rms;
+            if (reference == 0) reference = rms;
+            EXPECT_NEAR(rms / reference, 1, 1e-12) << name << " " << method;
+        }
+    }
+}
+
+TEST(Fit, a_volume_and_a_closed_surface_are_within_their_sampling) {
+    const FitResult block = fit(generate("bent-block"), size({8, 6, 5}));
+    EXPECT_EQ(block.report.kind, "volume");
+    EXPECT_LT(block.report.deviation.maximum, 5e-3);
+    FitOptions options = size({16, 12});
+    options.shape.closures = {Closure::closed};
+    const FitResult torus = fit(generate("torus"), options);
+    EXPECT_EQ(torus.report.control_shape, (std::vector<Index>{19, 15}));
+    EXPECT_LT(torus.report.deviation.maximum,
+              5e-3); // 16 cubic pieces of a circle of radius 4: (2 pi / 16)^4 / 720 * 4 and more
+    const auto a = torus.spline(std::array{0.0, 0.3});
+    const auto b = torus.spline(std::array{1.0, 0.3});
+    for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(a[d], b[d], 1e-14);
+}
+
+TEST(Fit, coordinates_of_1e9_keep_detail_of_1e_3) {
+    Samples near_zero = generate("rose");
+    PointSet far(near_zero.points);
+    for (double& x : far.values()) x = x * 0.01 + 1e9;
+    PointSet rounded = far; // what the doubles near 1e9 can hold
+    for (double& x : rounded.values()) x -= 1e9;
+    for (const char* method : {"direct", "mlspia"}) {
+        FitOptions options = size({40});
+        options.method.name = method;
+        const FitResult a = fit(sequence(far), options);
+        const FitResult b = fit(sequence(rounded), options);
+        EXPECT_NEAR(a.report.deviation.rms, b.report.deviation.rms, 2e-7)
+            << method; // one rounding of 1e9 is 1.2e-7
+        EXPECT_LT(a.report.deviation.maximum, 1e-3);
+    }
+}
+
+TEST(Fit, weights_equal_repeated_samples) {
+    const PointSet q = random_points(60, 2, 5);
+    const auto t = testing::random_parameters(60, 6);
+    Samples weighted = sequence(q);
+    weighted.weights.assign(60, 1.0);
+    PointSet repeated(61, 2);
+    std::vector<double> tr;
+    for (Index i = 0, row = 0; i < 60; ++i)
+        for (int copy = 0; copy < (i == 30 ? 2 : 1); ++copy, ++row) {
+            std::ranges::copy(q[i], repeated[row].begin());
+            tr.push_back(t[static_cast<std::size_t>(i)]);
+        }
+    weighted.weights[30] = 2;
+    FitOptions options = size({10});
+    options.shape.placement = KnotPlacement::uniform;
+    options.shape.parameters = Parameters{{t}, {}};
+    const FitResult a = fit(weighted, options);
+    options.shape.parameters = Parameters{{tr}, {}};
+    const FitResult b = fit(sequence(repeated), options);
+    EXPECT_LT(largest_difference(a.spline.control_points(), b.spline.control_points()), 1e-12);
+}
+
+TEST(Fit, samples_that_determine_too_little_are_named_or_iterated) {
+    PointSet q(60, 2);
+    std::vector<double> t;
+    for (Index i = 0; i < 60; ++i) {
+        const double x = i < 30 ? 0.299 * static_cast<double>(i) / 29
+                                : 0.8 + 0.2 * static_cast<double>(i - 30) / 29;
+        t.push_back(x);
+        q(i, 0) = x;
+        q(i, 1) = std::sin(5 * x);
+    }
+    FitOptions options = size({13});
+    options.shape.parameters = Parameters{{t}, {}};
+    options.shape.placement = KnotPlacement::uniform;
+    options.method.name = "direct";
+    EXPECT_EQ(message_of<InvalidInput>([&] { fit(sequence(q), options); }),
+              "axis 0: no samples in knot spans [0.3, 0.4], [0.4, 0.5], [0.5, 0.6], ...: the "
+              "direct solver cannot determine every control point "
+              "(Schoenberg-Whitney); use an iterative method such as --method cg, or --smooth");
+    options.method.name = "auto";
+    const FitResult result = fit(sequence(q), options);
+    EXPECT_EQ(result.report.method, "cg");
+    EXPECT_LT(result.report.deviation.maximum, 1e-3);
+    // the control points that no sample reaches stay where they started
+    options.method.initial = Initial::given;
+    options.method.control = random_points(13, 2, 9);
+    for (const char* method : {"cg", "lspia", "mlspia"}) {
+        options.method.name = method;
+        const FitResult given = fit(sequence(q), options);
+        for (Index d = 0; d < 2; ++d)
+            EXPECT_NEAR(given.spline.control_points()(7, d), options.method.control(7, d), 1e-15)
+                << method;
+    }
+}
+
+TEST(Fit, refuses_what_breaks_a_rule) {
+    const Samples rose = generate("rose", {20});
+    const auto refusal = [&](const FitOptions& options) {
+        return message_of<InvalidInput>([&] { fit(rose, options); });
+    };
+    EXPECT_EQ(refusal(size({3})), "axis 0: degree 3 needs at least 4 control points, got 3");
+    EXPECT_EQ(refusal(size({21})),
+              "axis 0: 21 control points need at least as many samples, got 20");
+    EXPECT_EQ(refusal(size({5, 5})), "control points: 2 values given for 1 axis");
+    FitOptions options = size({6});
+    options.shape.degree = {12};
+    EXPECT_EQ(refusal(options), "axis 0: degree 12 is outside 1 to 9");
+    options = size({6});
+    options.shape.knots = {{0.2, 0.2, 0.2, 0.2, 1, 1, 1, 1}};
+    EXPECT_EQ(refusal(options), "axis 0: parameters [0, 1] are outside the knots' domain [0.2, 1]");
+    options = size({6});
+    options.method.initial = Initial::given;
+    options.method.control = PointSet(5, 2);
+    options.method.name = "lspia";
+    EXPECT_EQ(refusal(options),
+              "initial control points: 5 of dimension 2 given, 6 of dimension 2 needed");
+    EXPECT_EQ(message_of<InvalidInput>([] { fit(sequence(PointSet(30, 2)), size({6})); }),
+              "axis 0: all points are identical; a curve through them has no length");
+    options = size({6});
+    options.cancelled = [] { return true; };
+    EXPECT_EQ(message_of<Cancelled>([&] { fit(rose, options); }), "the fit was cancelled");
+}
+
+TEST(Fit, identical_consecutive_samples_are_legal_and_said) {
+    const PointSet q({0, 0, 1, 1, 1, 1, 2, 1, 3, 0, 4, 0, 5, 1}, 2);
+    const FitResult result = fit(sequence(q), size({5}));
+    ASSERT_EQ(result.report.notes.size(), 1U);
+    EXPECT_EQ(result.report.notes[0],
+              "axis 0: 1 identical consecutive samples share a parameter and count each");
+}
+
+TEST(Threads, do_not_change_a_bit) {
+    for (const char* name : {"rose", "peaks", "bent-block"}) {
+        const Samples samples = generate(name);
+        FitOptions options =
+            size(std::vector<Index>(static_cast<std::size_t>(samples.axis_count()), 7));
+        options.threads = 1;
+        const std::vector<double> reference =
+            fit(samples, options).spline.control_points().values();
+        for (int threads : {2, 3, 8}) {
+            options.threads = threads;
+            const FitResult result = fit(samples, options);
+            EXPECT_EQ(result.spline.control_points().values(), reference) << name << " " << threads;
+        }
+    }
+}
+
+TEST(ClosestPoint, agrees_with_a_dense_search) {
+    const FitResult curve = fit(generate("rose"), size({40}));
+    const PointSet points = random_points(50, 2, 12);
+    const auto found = closest_points(curve.spline, points);
+    PointSet t(20001, 1);
+    for (Index i = 0; i < t.size(); ++i) t(i, 0) = static_cast<double>(i) / 20000;
+    const PointSet dense = evaluate(curve.spline, t);
+    for (Index i = 0; i < points.size(); ++i) {
+        double best = 1e9;
+        for (Index k = 0; k < dense.size(); ++k)
+            best = std::min(best, distance(dense[k], points[i]));
+        EXPECT_LE(found[static_cast<std::size_t>(i)].distance, best + 1e-12);
+        EXPECT_GE(found[static_cast<std::size_t>(i)].distance,
+                  best - 1e-3); // steps of the dense search
+    }
+}
+
+} // namespace
+} // namespace batten

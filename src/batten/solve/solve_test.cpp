@@ -1,0 +1,179 @@
+#include "problems.hpp"
+
+#include <Eigen/Dense>
+#include <batten/solve/banded_cholesky.hpp>
+#include <batten/system/collocation.hpp>
+
+namespace batten {
+namespace {
+
+using testing::largest_difference;
+using testing::message_of;
+using testing::random_parameters;
+using testing::random_points;
+
+Eigen::MatrixXd dense(const BandedMatrix& m) {
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(m.size(), m.size());
+    for (Index i = 0; i < m.size(); ++i)
+        for (int k = 0; k <= m.bandwidth(); ++k) {
+            const Index j = (i + k) % m.size();
+            if (i + k >= m.size() && m.closure() == Closure::open) continue;
+            result(i, j) += m.at(i, k);
+            if (k > 0) result(j, i) += m.at(i, k);
+        }
+    return result;
+}
+
+std::unique_ptr<NormalSystem> curve_system(int degree, Index n, Closure closure, Index m = 200) {
+    const auto t = random_parameters(m, 21);
+    return assemble({uniform_knots(degree, n, 0, 1, closure)},
+                    testing::sequence(random_points(m, 2, 22)), {{t}, {}});
+}
+
+TEST(BandedCholesky, solves_open_and_closed_systems_of_every_size) {
+    for (Closure closure : {Closure::open, Closure::closed})
+        for (int p : {1, 3, 6})
+            for (Index n :
+                 {Index{p + 1}, Index{p + 2}, Index{2 * p}, Index{2 * p + 3}, Index{40}}) {
+                if (n < p + 1) continue;
+                const auto system = curve_system(p, n, closure);
+                const BandedMatrix& m = *system->factors()[0];
+                const PointSet b = random_points(n, 3, 5);
+                PointSet x = b;
+                BandedCholesky(m).solve(x.data(), {1, 3});
+                PointSet back(n, 3);
+                m.apply(x.data(), back.data(), {1, 3});
+                EXPECT_LT(largest_difference(back, b), 1e-9)
+                    << p << " " << n; // condition up to 1e5
+                const Eigen::MatrixXd full = dense(m);
+                const Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> xs(x.data(),
+                                                                                          n, 3),
+                    bs(b.data(), n, 3);
+                EXPECT_LT((full * xs - bs).cwiseAbs().maxCoeff(), 1e-9);
+            }
+}
+
+TEST(BandedCholesky, names_the_control_point_that_no_sample_determines) {
+    BandedMatrix m(4, 1, Closure::open);
+    for (Index i : {0, 1, 3}) m.at(i, 0) = 2;
+    EXPECT_EQ(
+        message_of<SolverError>([&] { BandedCholesky c(m); }),
+        "the normal equations are singular: control point 2 is not determined by the samples");
+}
+
+TEST(Direct, leaves_a_residual_orthogonal_to_every_b_spline) {
+    const auto t = random_parameters(300, 1);
+    const PointSet q = random_points(300, 3, 2);
+    for (Closure closure : {Closure::open, Closure::closed}) {
+        const KnotVector k = knots_from_parameters(t, 3, 25, closure);
+        const auto system = assemble({k}, testing::sequence(q), {{t}, {}});
+        const PointSet p = uncentred(solve_direct(*system), system->centre());
+        const Collocation a(k, t);
+        PointSet residual = q;
+        add_scaled(residual, -1, a.apply(p));
+        EXPECT_LT(frobenius_norm(a.apply_transposed(residual)),
+                  1e-12 * frobenius_norm(q)); // A^T (Q - A P) = 0
+    }
+}
+
+TEST(Direct, a_grid_is_solved_axis_by_axis) {
+    const Samples samples = generate("bent-block", {9, 8, 7});
+    const Parameters t =
+        parametrize(samples, Parametrization::chord, {Closure::open, Closure::open, Closure::open});
+    std::vector<KnotVector> axes;
+    const Index n[] = {5, 6, 4};
+    for (std::size_t k = 0; k < 3; ++k)
+        axes.push_back(knots_from_parameters(t.axes[k], k == 1 ? 2 : 3, n[k]));
+    const auto system = assemble(axes, samples, t);
+    const PointSet p = solve_direct(*system);
+    EXPECT_LT(frobenius_norm(system->gradient(p)), 1e-11 * frobenius_norm(system->rhs()));
+    // the same from the dense Kronecker product, by Eigen
+    Eigen::MatrixXd a = Eigen::MatrixXd::Ones(1, 1);
+    for (std::size_t k = 0; k < 3; ++k) {
+        Eigen::MatrixXd one(static_cast<Index>(t.axes[k].size()), n[k]);
+        for (Index j = 0; j < one.rows(); ++j)
+            for (Index i = 0; i < n[k]; ++i)
+                one(j, i) = testing::basis_by_recursion(axes[k], i, axes[k].degree(),
+                                                        t.axes[k][static_cast<std::size_t>(j)]);
+        const Eigen::MatrixXd before = a;
+        a.resize(before.rows() * one.rows(), before.cols() * one.cols());
+        for (Index r = 0; r < before.rows(); ++r)
+            for (Index c = 0; c < before.cols(); ++c)
+                a.block(r * one.rows(), c * one.cols(), one.rows(), one.cols()) =
+                    before(r, c) * one;
+    }
+    const Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> q(samples.points.data(),
+                                                                             samples.size(), 3);
+    const Eigen::MatrixXd best = a.colPivHouseholderQr().solve(Eigen::MatrixXd(q));
+    const PointSet ours = uncentred(p, system->centre());
+    for (Index i = 0; i < ours.size(); ++i)
+        for (Index d = 0; d < 3; ++d)
+            EXPECT_NEAR(ours(i, d), best(i, d), 1e-9); // condition of the Gram matrix about 1e4
+}
+
+TEST(ExtremeEigenvalues, agree_with_a_dense_singular_value_decomposition) {
+    for (Index n : {Index{5}, Index{50}, Index{150}})
+        for (double tolerance : {1e-2, 1e-12}) {
+            const auto system = curve_system(3, n, Closure::open, 4 * n);
+            const auto t = random_parameters(4 * n, 21);
+            const KnotVector k = uniform_knots(3, n, 0, 1);
+            Eigen::MatrixXd a(4 * n, n);
+            for (Index j = 0; j < 4 * n; ++j)
+                for (Index i = 0; i < n; ++i)
+                    a(j, i) = testing::basis_by_recursion(k, i, 3, t[static_cast<std::size_t>(j)]);
+            const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues();
+            const ExtremeEigenvalues e = extreme_eigenvalues(*system, tolerance);
+            const double allowed = std::max(
+                tolerance, 1e-10); // squaring the matrix costs half the digits of the smallest
+            EXPECT_NEAR(e.largest / (sigma(0) * sigma(0)), 1, allowed);
+            EXPECT_NEAR(e.smallest / (sigma(n - 1) * sigma(n - 1)), 1, allowed) << n;
+        }
+}
+
+TEST(NormalSystem, energy_is_the_sum_of_squares) {
+    const auto t = random_parameters(200, 21);
+    const auto system = curve_system(3, 12, Closure::open);
+    const PointSet p = random_points(12, 2, 3);
+    PointSet residual = centred(random_points(200, 2, 22), system->centre());
+    add_scaled(residual, -1, Collocation(system->axes()[0], t).apply(p));
+    EXPECT_NEAR(system->energy(p) + system->data_energy(), inner_product(residual, residual),
+                1e-10);
+}
+
+TEST(Collocation, names_the_spans_that_lack_samples) {
+    const KnotVector k = uniform_knots(3, 13, 0, 1); // ten spans
+    std::vector<double> t = random_parameters(200, 9);
+    EXPECT_FALSE(undetermined(k, t).has_value());
+    std::erase_if(t, [](double x) { return x > 0.2 && x < 0.81; });
+    EXPECT_EQ(undetermined(k, t).value(),
+              "no samples in knot spans [0.2, 0.3], [0.3, 0.4], [0.4, 0.5], ...");
+    const KnotVector closed = uniform_knots(3, 10, 0, 1, Closure::closed);
+    EXPECT_TRUE(undetermined(closed, t).has_value());
+    EXPECT_FALSE(undetermined(closed, random_parameters(40, 3)).has_value());
+    EXPECT_EQ(message_of<InvalidInput>([&] {
+                  Collocation(k, std::vector<double>{0, 1.5});
+              }),
+              "parameter 1 = 1.5 is outside the knots' domain [0, 1]");
+}
+
+TEST(Collocation, the_closed_conditions_agree_with_the_rank) {
+    // few samples at random places: the rotation test must say what the rank says
+    std::mt19937_64 random(5);
+    for (int trial = 0; trial < 200; ++trial) {
+        const KnotVector k = uniform_knots(2, 5, 0, 1, Closure::closed);
+        std::vector<double> t(5 + static_cast<std::size_t>(trial % 3));
+        for (double& x : t)
+            x = std::uniform_real_distribution<double>(0, trial % 2 == 0 ? 1.0 : 0.7)(random);
+        std::sort(t.begin(), t.end());
+        const Collocation a(k, t);
+        Eigen::MatrixXd full = Eigen::MatrixXd::Zero(a.rows(), 5);
+        for (Index j = 0; j < a.rows(); ++j)
+            for (int r = 0; r <= 2; ++r) full(j, a.column(j, r)) += a.value(j, r);
+        Eigen::FullPivLU<Eigen::MatrixXd> lu(full);
+        lu.setThreshold(1e-10);
+        EXPECT_EQ(lu.rank() == 5, !undetermined(k, t).has_value()) << trial;
+    }
+}
+
+} // namespace
+} // namespace batten

@@ -1,0 +1,110 @@
+#include "problems.hpp"
+
+namespace batten {
+namespace {
+
+using testing::largest_difference;
+using testing::message_of;
+using testing::random_parameters;
+using testing::random_points;
+
+std::vector<double> even(double a, double b, Index count) {
+    std::vector<double> t;
+    for (Index i = 0; i < count; ++i)
+        t.push_back(a + (b - a) * static_cast<double>(i) / static_cast<double>(count - 1));
+    return t;
+}
+
+TEST(Spline, greville_abscissae_reproduce_the_line) {
+    const KnotVector k = knots_from_parameters(random_parameters(60, 1), 4, 13);
+    const Spline line({k}, PointSet(greville_abscissae(k), 1));
+    for (double t : even(0, 1, 33)) EXPECT_NEAR(line(std::array{t})[0], t, 1e-14);
+}
+
+TEST(Spline, derivatives_of_a_surface_agree_with_differences) {
+    const KnotVector u = uniform_knots(3, 7, 0, 1);
+    const KnotVector v = uniform_knots(4, 8, -1, 1);
+    const Spline s({u, v}, random_points(56, 3, 2));
+    const double h = 1e-5;
+    const std::array<double, 2> at{0.37, 0.11};
+    const auto mixed = s(at, std::array{1, 1});
+    for (std::size_t d = 0; d < 3; ++d) {
+        const auto f = [&](double a, double b) { return s(std::array{at[0] + a, at[1] + b})[d]; };
+        EXPECT_NEAR(mixed[d], (f(h, h) - f(h, -h) - f(-h, h) + f(-h, -h)) / (4 * h * h),
+                    2e-4 * (1 + std::abs(mixed[d])));
+    }
+}
+
+TEST(Spline, grid_and_scattered_evaluation_agree) {
+    const Spline s({uniform_knots(2, 5, 0, 1), uniform_knots(3, 6, 0, 1, Closure::closed),
+                    uniform_knots(1, 4, 0, 1)},
+                   random_points(5 * 9 * 4, 2, 4));
+    const std::vector<std::vector<double>> axes{even(0, 1, 4), even(0, 1, 5), even(0, 1, 3)};
+    PointSet scattered(60, 3);
+    Index row = 0;
+    for (double a : axes[0])
+        for (double b : axes[1])
+            for (double c : axes[2]) {
+                std::ranges::copy(std::array{a, b, c}, scattered[row].begin());
+                ++row;
+            }
+    EXPECT_LT(largest_difference(evaluate_grid(s, axes), evaluate(s, scattered)), 1e-14);
+}
+
+TEST(Spline, inserting_knots_changes_nothing) {
+    for (Closure closure : {Closure::open, Closure::closed}) {
+        const KnotVector k = uniform_knots(3, 8, 0, 1, closure);
+        const Spline before = Spline::from_free({k}, random_points(8, 2, 6));
+        for (double t : {0.0, 0.03, 0.375, 0.41, 0.999}) {
+            if (t == 0 && closure == Closure::open) continue;
+            const Spline after = insert_knot(before, 0, t, 2);
+            EXPECT_EQ(after.axis(0).free_count(), 10);
+            const auto at = even(0, 1, 101);
+            EXPECT_LT(largest_difference(evaluate_grid(before, {at}), evaluate_grid(after, {at})),
+                      1e-14)
+                << t;
+        }
+    }
+}
+
+TEST(Spline, inserting_knots_into_one_axis_of_a_surface_changes_nothing) {
+    const Spline before({uniform_knots(3, 6, 0, 1), uniform_knots(2, 5, 0, 1)},
+                        random_points(30, 3, 8));
+    const auto at = even(0, 1, 17);
+    for (Index axis : {0, 1}) {
+        const Spline after = insert_knot(before, axis, 0.7);
+        EXPECT_LT(
+            largest_difference(evaluate_grid(before, {at, at}), evaluate_grid(after, {at, at})),
+            1e-14);
+    }
+}
+
+TEST(Spline, a_closed_curve_closes_with_its_derivatives) {
+    const Spline s =
+        Spline::from_free({uniform_knots(4, 9, 0, 1, Closure::closed)}, random_points(9, 3, 10));
+    for (int order = 0; order <= 3; ++order) {
+        const auto a = s(std::array{0.0}, std::array{order});
+        const auto b = s(std::array{1.0}, std::array{order});
+        for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(a[d], b[d], 1e-11 * std::pow(10, order));
+    }
+}
+
+TEST(Spline, refuses_what_breaks_a_rule) {
+    const KnotVector k = uniform_knots(3, 6, 0, 1);
+    EXPECT_EQ(message_of<InvalidInput>([&] { Spline({k}, PointSet(5, 2)); }),
+              "spline: 5 control points given, the knots need 6");
+    const Spline s({k}, PointSet(6, 2));
+    EXPECT_EQ(message_of<InvalidInput>([&] { insert_knot(s, 0, 1.5); }),
+              "axis 0: knot 1.5 is outside the domain [0, 1]");
+    EXPECT_EQ(message_of<InvalidInput>([&] { insert_knot(s, 0, 0.5, 4); }),
+              "axis 0: knot 0.5 would have a multiplicity above the degree 3");
+    EXPECT_EQ(message_of<InvalidInput>([&] {
+                  s(std::array{0.5, 0.5});
+              }),
+              "evaluate: 2 parameters given for 1 axes");
+    EXPECT_EQ(message_of<InvalidInput>([&] { s(std::array{0.5}, std::array{-1}); }),
+              "evaluate: derivative order -1 is negative");
+}
+
+} // namespace
+} // namespace batten

@@ -1,0 +1,239 @@
+"""The command as a user meets it: files in and out, messages, exit statuses. Numbers are checked by SciPy."""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import numpy as np
+from scipy.interpolate import BSpline
+
+BATTEN = os.environ["BATTEN"]
+ROOT = pathlib.Path(os.environ["BATTEN_ROOT"])
+SHARED = ROOT.parent / "shared" / "data"
+
+
+def evaluate(spline, *parameters):
+    """Points of a written spline over the grid of parameters, by SciPy alone."""
+    points = np.array(spline["control_points"]).reshape(*spline["control_shape"], -1)
+    for axis, t in enumerate(parameters):
+        one = BSpline(np.array(spline["knots"][axis]), np.moveaxis(points, axis, 0), spline["degree"][axis])
+        points = np.moveaxis(one(t), 0, axis)
+    return points
+
+
+def chord(points):
+    length = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    return length / length[-1]
+
+
+class Command(unittest.TestCase):
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self._folder.name)
+
+    def tearDown(self):
+        self._folder.cleanup()
+
+    def run_batten(self, *arguments, stdin=None):
+        return subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, input=stdin, capture_output=True, text=True, timeout=120)
+
+    def good(self, *arguments, stdin=None):
+        done = self.run_batten(*arguments, stdin=stdin)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def bad(self, status, message, *arguments, stdin=None):
+        """One line on standard error, the status, and nothing written."""
+        before = sorted(self.folder.iterdir())
+        done = self.run_batten(*arguments, stdin=stdin)
+        self.assertEqual(done.stderr, "batten: " + message + "\n")
+        self.assertEqual(done.returncode, status)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+        return name
+
+    def read_json(self, name):
+        return json.loads((self.folder / name).read_text())
+
+
+class Fits(Command):
+    def test_profile(self):
+        profile = SHARED / "profile205.csv"
+        if not profile.exists():
+            self.skipTest("shared data absent: profile205.csv")
+        self.good("fit", profile, "--control-points", 20, "-o", "a.json", "-o", "a.svg", "--summary", "s.json")
+        summary, spline = self.read_json("s.json"), self.read_json("a.json")
+        data = np.loadtxt(profile, delimiter=",", skiprows=1)
+        deviation = np.linalg.norm(evaluate(spline, chord(data)) - data, axis=1)
+        self.assertAlmostEqual(summary["max_deviation"], deviation.max(), 13)
+        self.assertAlmostEqual(summary["rms_deviation"], np.sqrt((deviation**2).mean()), 13)
+        self.assertEqual(summary["worst_sample"], deviation.argmax())
+        self.assertEqual((summary["samples"], summary["dim"], summary["control_shape"], summary["termination"]), (205, 2, [20], "converged"))
+        self.assertTrue((self.folder / "a.svg").read_text().startswith("<svg"))
+        # the least-squares optimum itself, by SciPy
+        from scipy.interpolate import make_lsq_spline
+        best = make_lsq_spline(chord(data), data, np.array(spline["knots"][0]), 3)
+        np.testing.assert_allclose(spline["control_points"], best.c, atol=1e-10)
+
+    def test_terrain(self):
+        terrain = SHARED / "terrain344x403.npy"
+        if not terrain.exists():
+            self.skipTest("shared data absent: terrain344x403.npy")
+        self.good("fit", terrain, "--heights", "--control-points", "90x100", "-o", "t.json", "--summary", "s.json")
+        summary, spline = self.read_json("s.json"), self.read_json("t.json")
+        heights = np.load(terrain)
+        points = evaluate(spline, np.linspace(0, 1, 344), np.linspace(0, 1, 403))
+        deviation = np.abs(points[..., 2] - heights)
+        grid = np.stack(np.meshgrid(np.arange(344), np.arange(403), indexing="ij"), axis=-1)
+        np.testing.assert_allclose(points[..., :2], grid, atol=1e-9)  # the plane coordinates are linear: reproduced
+        self.assertAlmostEqual(summary["max_deviation"] / deviation.max(), 1, 10)
+        self.assertAlmostEqual(summary["rms_deviation"] / np.sqrt((deviation**2).mean()), 1, 10)
+        self.assertEqual(summary["worst_sample"], deviation.argmax())
+
+    def test_closed_curve_repeats_its_first_control_points(self):
+        self.good("generate", "circle", "-o", "c.csv")
+        self.good("fit", "c.csv", "--closed", "-n", 12, "-o", "c.json")
+        spline = self.read_json("c.json")
+        self.assertEqual(spline["closed"], [True])
+        self.assertEqual(spline["control_shape"], [15])
+        self.assertEqual(spline["control_points"][:3], spline["control_points"][-3:])
+        radius = np.linalg.norm(evaluate(spline, np.linspace(0, 1, 400)), axis=1)
+        self.assertLess(abs(radius - 1).max(), 1e-3)  # 12 cubic pieces of a circle: 3e-4
+
+    def test_history_and_streams(self):
+        points = self.good("generate", "rose")
+        out = self.good("fit", "-", "-n", 40, "--method", "mlspia", "--history", "--summary", "s.json", "-o", "-", stdin=points)
+        self.assertEqual(json.loads(out)["format"], "batten-spline")
+        summary = self.read_json("s.json")
+        self.assertEqual(len(summary["history"]), summary["iterations"] + 1)
+        self.assertLess(summary["history"][-1]["gradient_norm"], 1e-10 * summary["history"][0]["gradient_norm"])
+
+    def test_evaluate_compare_info_convert(self):
+        self.good("generate", "naca2412", "-o", "w.csv")
+        self.good("fit", "w.csv", "-n", 24, "-o", "w.json")
+        points = np.array([line.split() for line in self.good("evaluate", "w.json", "--samples", 50).splitlines()], float)
+        spline = self.read_json("w.json")
+        np.testing.assert_allclose(points, evaluate(spline, np.linspace(0, 1, 50)), atol=1e-15)
+        slope = np.array([line.split() for line in self.good("evaluate", "w.json", "--samples", 9, "--derivative", 1).splitlines()], float)
+        exact = BSpline(np.array(spline["knots"][0]), np.array(spline["control_points"]), 3).derivative()(np.linspace(0, 1, 9))
+        np.testing.assert_allclose(slope, exact, atol=1e-12)
+        self.assertRegex(self.good("compare", "w.json", "w.csv"), r"^201 points, distance to the closest point of the spline: largest 0\.00")
+        self.assertIn("24 control points", self.good("info", "w.json"))
+        self.assertIn("201 points in dimension 2", self.good("info", "w.csv"))
+        self.good("convert", "w.json", "-o", "again.json", "-o", "w.svg")
+        self.assertEqual((self.folder / "again.json").read_text(), (self.folder / "w.json").read_text())
+
+    def test_knots_and_parameters_from_files(self):
+        self.good("generate", "rose", "--samples", 101, "-o", "r.csv")
+        self.write("t.txt", "\n".join(str(i / 100) for i in range(101)))
+        self.write("k.txt", " ".join(map(str, [0, 0, 0, 0, *np.linspace(0, 1, 20)[1:-1], 1, 1, 1, 1])))
+        self.good("fit", "r.csv", "--parameters", "t.txt", "--knots", "k.txt", "-o", "a.json")
+        self.good("fit", "r.csv", "--parametrize", "uniform", "--knots", "uniform", "-n", 22, "-o", "b.json")
+        a, b = self.read_json("a.json"), self.read_json("b.json")
+        np.testing.assert_allclose(a["control_points"], b["control_points"], atol=1e-12)
+
+    def test_every_airfoil_is_read(self):
+        files = sorted((SHARED / "airfoils").glob("*.dat"))
+        if not files:
+            self.skipTest("shared data absent: airfoils")
+        for file in files:
+            self.good("fit", file, "-n", 16, "-q")
+
+
+class Refusals(Command):
+    def setUp(self):
+        super().setUp()
+        self.good("generate", "rose", "--samples", 30, "-o", "r.csv")
+        self.good("generate", "peaks", "--samples", "9x9", "-o", "p.csv")
+
+    def test_files(self):
+        self.bad(3, "none.csv: cannot be read: No such file or directory", "fit", "none.csv", "-n", 8)
+        self.bad(3, "e.csv: the file is empty", "fit", self.write("e.csv", ""), "-n", 8)
+        self.bad(3, "g.csv:3: 3 numbers where the rows before have 2", "fit", self.write("g.csv", "1,2\n3,4\n5,6,7\n"), "-n", 8)
+        self.bad(3, "h.csv:2:3: 'x' is not a number", "fit", self.write("h.csv", "1,2\n3,x\n"), "-n", 8)
+        self.bad(2, "sample 1: its coordinates (3, inf) must be finite numbers", "fit", self.write("i.csv", "1,2\n3,inf\n"), "-n", 8)
+        self.bad(2, "a.foo: unknown extension '.foo'; known: .json, .svg", "fit", "r.csv", "-n", 8, "-o", "a.foo")
+        self.bad(3, "no/a.json: the folder no does not exist", "fit", "r.csv", "-n", 8, "-o", "no/a.json")
+        self.bad(3, "no/s.json: the folder no does not exist", "fit", "r.csv", "-n", 8, "--summary", "no/s.json")
+        if os.geteuid() != 0:
+            (self.folder / "r.csv").chmod(0)
+            self.bad(3, "r.csv: cannot be read: Permission denied", "fit", "r.csv", "-n", 8)
+
+    def test_a_full_disk_leaves_nothing(self):
+        done = subprocess.run(f"{BATTEN} generate rose > /dev/full", shell=True, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 3)
+        self.assertEqual(done.stderr, "batten: standard output: cannot be written: No space left on device\n")
+
+    def test_sizes(self):
+        self.bad(2, "axis 0: 40 control points need at least as many samples, got 30", "fit", "r.csv", "-n", 40)
+        self.bad(2, "axis 0: degree 3 needs at least 4 control points, got 3", "fit", "r.csv", "-n", 3)
+        self.bad(2, "axis 0: degree 11 is outside 1 to 9", "fit", "r.csv", "-n", 20, "-p", 11)
+        self.bad(2, "--control-points 20y: counts like 30, 20x30 or 8x8x8 are needed", "fit", "r.csv", "-n", "20y")
+        self.bad(2, "grid: 9x8 needs 72 samples, got 81", "fit", "p.csv", "--grid", "9x8", "-n", "5x5")
+        self.bad(2, "control points: 2 values given for 1 axis", "fit", "r.csv", "-n", "5x5")
+        self.bad(2, "axis 0: all points are identical; a curve through them has no length", "fit", self.write("s.csv", "1,2\n" * 9), "-n", 5)
+
+    def test_knots_and_parameters(self):
+        knots = self.write("k.txt", "0 0 0 0 0.6 0.5 1 1 1 1")
+        self.bad(2, "axis 0: knots must ascend: knot 5 = 0.5 is less than knot 4 = 0.6", "fit", "r.csv", "--knots", knots)
+        knots = self.write("k.txt", "0 0 0 0 0.5 0.9 0.9 0.9 0.9")
+        self.bad(2, "axis 0: parameters [0, 1] are outside the knots' domain [0, 0.9]", "fit", "r.csv", "--knots", knots)
+        parameters = self.write("t.txt", "\n".join(["0"] * 29 + ["1"]))
+        self.bad(2, "axis 0: no samples in knot spans [0.2, 0.4], [0.4, 0.6], [0.6, 0.8]: the direct solver cannot determine every control point "
+                    "(Schoenberg-Whitney); use an iterative method such as --method cg, or --smooth",
+                 "fit", "r.csv", "--parameters", parameters, "--knots", "uniform", "-n", 8, "--method", "direct")
+
+    def test_words(self):
+        self.bad(2, "unknown option '--contol-points'; did you mean '--control-points'?", "fit", "r.csv", "--contol-points", 8)
+        self.bad(2, "unknown argument 'fti'; did you mean 'fit'?", "fti", "r.csv")
+        self.bad(2, "unknown method 'lspai'; did you mean 'lspia'?", "fit", "r.csv", "-n", 8, "--method", "lspai")
+        self.bad(2, "unknown value of --parametrize 'cord'; did you mean 'chord'?", "fit", "r.csv", "-n", 8, "--parametrize", "cord")
+        self.bad(2, "unknown setting of method mlspia 'nue'; did you mean 'nu'?", "fit", "r.csv", "-n", 8, "--method", "mlspia", "--set", "nue=1")
+        self.bad(2, "method direct has no settings, got 'mu'", "fit", "r.csv", "-n", 8, "--method", "direct", "--set", "mu=1")
+        self.bad(2, "--set mu: name=value is needed", "fit", "r.csv", "-n", 8, "--set", "mu")
+        self.bad(2, "unknown data set 'rsoe'; did you mean 'rose'?", "generate", "rsoe")
+        done = self.run_batten("fit")
+        self.assertEqual((done.returncode, done.stderr), (2, "batten: POINTS is required\n"))
+
+
+class Manners(Command):
+    def test_help_names_an_example_for_every_command(self):
+        for name in re.findall(r"^  (\w+) ", self.good("--help").split("Subcommands:")[1], re.M):
+            self.assertIn(f"batten {name}", self.good(name, "--help"), name)
+
+    def test_no_argument_says_what_to_do_next(self):
+        self.assertIn("batten fit wing.csv", self.good())
+
+    def test_interrupt_leaves_nothing(self):
+        self.good("generate", "rose", "--samples", 200000, "-o", "big.csv")
+        before = sorted(self.folder.iterdir())
+        fit = subprocess.Popen([BATTEN, "fit", "big.csv", "-n", "90000", "--method", "lspia", "--stop-gradient", "1e-300",
+                                "--max-iterations", "100000000", "-o", "x.json"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        time.sleep(1.5)
+        fit.send_signal(signal.SIGINT)
+        _, words = fit.communicate(timeout=60)
+        self.assertEqual(fit.returncode, 130)
+        self.assertEqual(words, "batten: interrupted; nothing was written\n")
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+
+
+class Readme(Command):
+    def test_commands_shown_run(self):
+        """Every `batten ...` line in README's code blocks runs in order in an empty folder."""
+        text = (ROOT / "README.md").read_text()
+        lines = [line for block in re.findall(r"```sh\n(.*?)```", text, re.S) for line in block.splitlines() if line.startswith("batten ")]
+        self.assertGreater(len(lines), 3)
+        for line in lines:
+            self.good(*line.split("#")[0].split()[1:])
+
+
+if __name__ == "__main__":
+    unittest.main()
