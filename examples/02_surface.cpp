@@ -5,7 +5,9 @@
 
 int main() {
     const batten::FitResult result =
-        batten::fit(batten::generate("peaks"), {.shape = {.control_points = {41, 41}}});
+        batten::fit(batten::generate("peaks"),
+                    {.shape = {.control_points = {41, 41},
+                               .parametrization = batten::Parametrization::uniform}});
     const std::array at{0.5, 0.5};
     const auto du = result.spline(at, std::array{1, 0});
     const auto dv = result.spline(at, std::array{0, 1});

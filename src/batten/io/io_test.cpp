@@ -120,10 +120,9 @@ TEST_F(Files, missing_files_and_folders_are_file_trouble) {
               path("folder.csv") + ": cannot be read: Is a directory");
     EXPECT_EQ(message_of<FileError>([&] { check_output(path("no/where.json")); }),
               path("no/where.json") + ": the folder " + path("no") + " does not exist");
-    EXPECT_EQ(message_of<InvalidInput>([&] {
-                  check_output(path("a.jsn"));
-              }).substr(0, path("a.jsn").size() + 27),
-              path("a.jsn") + ": unknown extension '.jsn'; ");
+    const std::string words = message_of<InvalidInput>([&] { check_output(path("a.jsn")); });
+    EXPECT_TRUE(
+        words.starts_with(path("a.jsn") + ": unknown extension '.jsn'; known: .json, .svg"));
 }
 
 TEST_F(Files, npy_of_other_types_and_orders_is_read) {
