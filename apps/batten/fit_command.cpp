@@ -42,12 +42,15 @@ struct FitFlags {
     double stop_relative_gradient = 0;
     double stop_deviation = 0;
     std::string weights;
+    std::string interpolate;
+    std::string preserve;
+    std::string moving;
     int threads = 0;
     bool quiet = false;
 };
 
 /// Options of the plan that this version does not have: refused by name, never ignored.
-constexpr const char* planned[] = {"--tolerance", "--project", "--preserve", "--interpolate"};
+constexpr const char* planned[] = {"--tolerance", "--project"};
 
 void add_shape_flags(CLI::App& fit, FitFlags& flags) {
     fit.add_option("--control-points,-n", flags.control_points,
@@ -94,6 +97,14 @@ void add_method_flags(CLI::App& fit, FitFlags& flags) {
         ->group("Method")
         ->capture_default_str();
     fit.add_option("--set", flags.set, "The method's own numbers: name=value")->group("Method");
+    fit.add_option("--moving", flags.moving, "Local PIA: only these control points move: 3,4,5")
+        ->group("Method");
+    fit.add_option("--interpolate", flags.interpolate,
+                   "Samples to hit exactly: ends, a list 0,20,40, or a file of indices")
+        ->group("Must hold");
+    fit.add_option("--preserve", flags.preserve,
+                   "convexity or inflections of the initial control polygon, at every step")
+        ->group("Must hold");
     fit.add_option("--max-iterations", flags.max_iterations, "Most iterations")
         ->check(CLI::NonNegativeNumber)
         ->group("Stop")
@@ -144,7 +155,12 @@ std::optional<Parameters> given_parameters(const FitFlags& flags) {
     if (flags.parameters.empty()) return std::nullopt;
     Parameters parameters;
     for (const std::string& path : flags.parameters) {
-        const PointSet table = read_table(path);
+        PointSet table = read_table(path);
+        if (table.dim() > 1 && table.size() > 1 &&
+            flags.parameters.size() == 1) { // a cloud: u, v per sample
+            parameters.scattered = std::move(table);
+            return parameters;
+        }
         if (table.dim() != 1 && table.size() != 1)
             throw InvalidInput(fmt::format("{}: one parameter per line is needed, got {} columns",
                                            path, table.dim()));
@@ -195,6 +211,40 @@ MethodOptions method_options(const FitFlags& flags) {
     return method;
 }
 
+/// `0,20,40`, or the whole numbers of a file.
+std::vector<Index> index_list(std::string_view option, const std::string& text) {
+    std::vector<double> numbers;
+    if (text.find_first_not_of("0123456789,") != std::string::npos)
+        numbers = read_table(text).values();
+    else
+        for (std::size_t at = 0; at <= text.size();) {
+            const std::size_t end = std::min(text.find(',', at), text.size());
+            numbers.push_back(parse_number(option, text.substr(at, end - at)));
+            at = end + 1;
+        }
+    std::vector<Index> result;
+    for (double x : numbers) {
+        if (x != std::floor(x) || x < 0)
+            throw InvalidInput(fmt::format("{}: {} is not an index", option, x));
+        result.push_back(static_cast<Index>(x));
+    }
+    return result;
+}
+
+HoldOptions hold_options(const FitFlags& flags, const Samples& samples) {
+    constexpr std::string_view shapes[] = {"convexity", "inflections"};
+    HoldOptions hold;
+    if (flags.interpolate == "ends")
+        hold.interpolate = end_samples(samples);
+    else if (!flags.interpolate.empty())
+        hold.interpolate = index_list("--interpolate", flags.interpolate);
+    if (!flags.preserve.empty())
+        hold.preserve = parse_choice("--preserve", flags.preserve, shapes) == 0
+                            ? Preserve::convexity
+                            : Preserve::inflections;
+    return hold;
+}
+
 StopRule stop_rule(const FitFlags& flags, const CLI::App& fit) {
     StopRule stop;
     const bool relative = fit.count("--stop-relative-gradient") > 0;
@@ -225,9 +275,13 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     const Samples samples = samples_of(flags);
     FitOptions options;
     options.shape = shape_options(flags, fit_app.count("--closed") > 0, samples);
-    if (options.shape.control_points.empty() && options.shape.knots.empty())
+    const bool grows =
+        flags.method == "pia" || flags.method == "epia"; // these find their own number
+    if (options.shape.control_points.empty() && options.shape.knots.empty() && !grows)
         throw InvalidInput("state a size: --control-points 30 (or 20x30 for a grid)");
     options.method = method_options(flags);
+    options.hold = hold_options(flags, samples);
+    if (!flags.moving.empty()) options.method.moving = index_list("--moving", flags.moving);
     options.stop = stop_rule(flags, fit_app);
     options.keep_history = flags.history;
     options.threads = flags.threads;

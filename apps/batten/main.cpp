@@ -45,9 +45,11 @@ std::vector<std::string> candidates(const CLI::App& app, const std::string& word
 
 std::string words_for(const CLI::ParseError& error, const CLI::App& app) {
     const std::string what = error.what();
-    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return what.substr(0, what.find('\n'));
+    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError))
+        return what.substr(0, what.find('\n'));
     const std::vector<std::string> extra = app.remaining(true);
-    const auto flag = std::ranges::find_if(extra, [](const std::string& text) { return text.starts_with("-"); });
+    const auto flag =
+        std::ranges::find_if(extra, [](const std::string& text) { return text.starts_with("-"); });
     const std::string whole = extra.empty() ? "" : flag == extra.end() ? extra.front() : *flag;
     const std::string word = whole.substr(0, whole.find('='));
     const std::vector<std::string> names = candidates(app, word);

@@ -1,53 +1,65 @@
 #include <batten/fit/fit.hpp>
 
 #include <batten/core/stopwatch.hpp>
+#include <batten/fit/epia.hpp>
+#include <batten/fit/pia.hpp>
 #include <batten/fit/plan.hpp>
+#include <batten/fit/run.hpp>
 #include <batten/iterate/methods.hpp>
-#include <batten/solve/direct.hpp>
 #include <batten/system/collocation.hpp>
 
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace batten {
 
 namespace {
 
-/// Names a stage's seconds in the report and stops a cancelled fit between stages.
-class Stages {
-  public:
-    Stages(FitReport& report, const FitOptions& options) : report_(report), options_(options) {}
-    void done(const char* stage) {
-        report_.seconds.emplace_back(stage, watch_.lap());
-        if (options_.cancelled && options_.cancelled()) throw Cancelled("the fit was cancelled");
-    }
+void stop_if_cancelled(const FitOptions& options) {
+    if (options.cancelled && options.cancelled()) throw Cancelled("the fit was cancelled");
+}
 
-  private:
-    FitReport& report_;
-    const FitOptions& options_;
-    Stopwatch watch_;
-};
-
-/// Words for what the samples leave undetermined, axis by axis; nothing when all is determined.
+/// Words for what the samples leave undetermined, axis by axis; nothing when all is determined or
+/// nobody can tell cheaply.
 std::string undetermined_axes(const std::vector<KnotVector>& axes, const Parameters& parameters) {
-    for (std::size_t k = 0; k < axes.size(); ++k)
+    for (std::size_t k = 0; k < parameters.axes.size(); ++k)
         if (const auto words = undetermined(axes[k], parameters.axes[k]))
             return fmt::format("axis {}: {}", k, *words);
     return {};
 }
 
-std::string choose_method(const MethodOptions& options, const std::string& gap, FitReport& report) {
-    method_entry(options.name); // refuses unknown names
-    if (options.name == "direct" && !gap.empty())
+/// The method to run, and why when the caller left it open.
+std::string choose_method(const FitOptions& options, const std::string& gap, FitReport& report) {
+    const std::string& name = options.method.name;
+    const bool exact = !options.hold.interpolate.empty();
+    const bool shape = options.hold.preserve != Preserve::nothing;
+    if (name == "direct" && !gap.empty())
         throw InvalidInput(fmt::format(
             "{}: the direct solver cannot determine every control point (Schoenberg-Whitney); "
             "use an iterative method such as --method cg, or --smooth",
             gap));
-    if (options.name != "auto") return options.name;
-    report.method_reason =
-        gap.empty() ? "fixed knots and enough samples: one banded solve is exact and fastest"
-                    : gap + ": an iteration leaves what no sample determines where it starts";
-    return gap.empty() ? "direct" : "cg";
+    if (name == "direct" && shape)
+        throw InvalidInput(
+            "method direct cannot preserve a shape step by step; use lspia, mlspia or clspia");
+    if (name != "auto" && name != "direct" && name != "clspia" && exact)
+        throw InvalidInput(fmt::format(
+            "method {} cannot interpolate samples exactly; use direct or clspia", name));
+    if (name != "auto") return name;
+    if (shape) {
+        report.method_reason = "the shape is kept step by step";
+        return exact ? "clspia" : "mlspia";
+    }
+    if (gap.empty()) {
+        report.method_reason =
+            exact ? "exact samples: one saddle-point solve"
+                  : "fixed knots and enough samples: one solve is exact and fastest";
+        return "direct";
+    }
+    if (exact)
+        throw InvalidInput(
+            gap +
+            ": samples cannot be interpolated while others leave control points undetermined");
+    report.method_reason = gap + ": an iteration leaves what no sample determines where it starts";
+    return "cg";
 }
 
 void note_duplicates(const Parameters& parameters, FitReport& report) {
@@ -62,87 +74,66 @@ void note_duplicates(const Parameters& parameters, FitReport& report) {
     }
 }
 
-Observer recording(const FitOptions& options, FitReport& report) {
-    return [&](const Iteration& now) {
-        if (options.keep_history)
-            report.history.push_back({now.number, now.gradient_norm, now.largest_move});
-        if (options.cancelled && options.cancelled()) return Continue::no;
-        return options.observer ? options.observer(now) : Continue::yes;
-    };
+/// A fit with stated knots or a stated number of control points, by least squares.
+FitResult fit_fixed(const Samples& samples, const FitOptions& options) {
+    FitResult result;
+    FitReport& report = result.report;
+    Stopwatch watch;
+    const AxisPlan plan = plan_axes(samples, options.shape);
+    result.parameters = choose_parameters(samples, options.shape, plan);
+    note_duplicates(result.parameters, report);
+    report.seconds.emplace_back("parametrize", watch.lap());
+    stop_if_cancelled(options);
+    const std::vector<KnotVector> axes = choose_knots(result.parameters, options.shape, plan);
+    report.method = choose_method(options, undetermined_axes(axes, result.parameters), report);
+    const Constraints constraints =
+        interpolate_samples(axes, samples, result.parameters, options.hold.interpolate);
+    report.seconds.emplace_back("knots", watch.lap());
+    stop_if_cancelled(options);
+    const PointSet control =
+        least_squares(axes, samples, result.parameters, constraints, options, report);
+    stop_if_cancelled(options);
+    result.spline = Spline::from_free(axes, control);
+    return result;
 }
 
-DeviationMeasure measuring(const NormalSystem& system, const Samples& samples,
-                           const Parameters& parameters) {
-    return [&](const PointSet& control) {
-        const Spline now = Spline::from_free(system.axes(), uncentred(control, system.centre()));
-        return summarise(parametric_deviations(now, samples, parameters), DeviationKind::parametric)
-            .maximum;
-    };
-}
-
-/// Control points relative to the centre, by the method of the report.
-PointSet solve(const NormalSystem& system, const Samples& samples, const Parameters& parameters,
-               const FitOptions& options, FitReport& report) {
-    if (report.method == "direct") {
-        check_settings(method_entry("direct"), options.method.settings);
-        return solve_direct(system);
-    }
-    PointSet control = centred(initial_control(samples, parameters, system.axes(), options.method),
-                               system.centre());
-    const auto method = make_method(report.method, system, options.method.settings);
-    const Summary summary =
-        iterate(*method, control, options.stop,
-                {recording(options, report), {}, measuring(system, samples, parameters)});
-    report.termination = summary.termination;
-    report.iterations = summary.iterations;
-    report.gradient_norm = summary.gradient_norm;
-    report.first_gradient_norm = summary.first_gradient_norm;
-    report.observed_rate = summary.observed_rate;
-    report.predicted_rate = method->predicted_rate();
-    report.settings = method->settings();
-    return control;
-}
-
-void describe(FitReport& report, const Samples& samples, const Spline& spline) {
+/// Fills in what every fit's report says of samples, spline and deviation.
+void describe(FitResult& result, const Samples& samples, const FitOptions& options) {
+    FitReport& report = result.report;
     constexpr const char* kinds[] = {"curve", "surface", "volume"};
-    report.kind = kinds[spline.axis_count() - 1];
+    report.kind = kinds[result.spline.axis_count() - 1];
     report.samples = samples.size();
     report.dim = samples.dim();
-    report.control_shape = spline.control_shape();
-    for (const KnotVector& axis : spline.axes()) {
+    report.control_shape = result.spline.control_shape();
+    for (const KnotVector& axis : result.spline.axes()) {
         report.degree.push_back(axis.degree());
         report.closures.push_back(axis.closure());
     }
+    report.notes.insert(report.notes.begin(), samples.notes.begin(), samples.notes.end());
     report.data_size = diagonal(samples.points);
+    const std::vector<double> deviations =
+        parametric_deviations(result.spline, samples, result.parameters);
+    report.deviation = summarise(deviations, DeviationKind::parametric);
+    report.interpolated = static_cast<Index>(options.hold.interpolate.size());
+    for (Index i : options.hold.interpolate)
+        report.constraint_error =
+            std::max(report.constraint_error, deviations[static_cast<std::size_t>(i)]);
 }
 
 } // namespace
 
 FitResult fit(const Samples& samples, const FitOptions& options) {
     const ThreadLimit limit(options.threads);
-    FitResult result;
-    FitReport& report = result.report;
-    Stages stages(report, options);
     check(samples);
-    report.notes = samples.notes;
-    const AxisPlan plan = plan_axes(samples, options.shape);
-    stages.done("check");
-    result.parameters = choose_parameters(samples, options.shape, plan);
-    note_duplicates(result.parameters, report);
-    stages.done("parametrize");
-    const std::vector<KnotVector> axes = choose_knots(result.parameters, options.shape, plan);
-    report.method =
-        choose_method(options.method, undetermined_axes(axes, result.parameters), report);
-    stages.done("knots");
-    const auto system = assemble(axes, samples, result.parameters);
-    stages.done("assemble");
-    const PointSet control = solve(*system, samples, result.parameters, options, report);
-    stages.done("solve");
-    result.spline = Spline::from_free(axes, uncentred(control, system->centre()));
-    describe(report, samples, result.spline);
-    report.deviation = summarise(parametric_deviations(result.spline, samples, result.parameters),
-                                 DeviationKind::parametric);
-    stages.done("deviation");
+    check_settings(method_entry(options.method.name), options.method.settings);
+    stop_if_cancelled(options);
+    const std::string& method = options.method.name;
+    FitResult result = method == "pia"    ? fit_pia(samples, options)
+                       : method == "epia" ? fit_epia(samples, options)
+                                          : fit_fixed(samples, options);
+    Stopwatch watch;
+    describe(result, samples, options);
+    result.report.seconds.emplace_back("deviation", watch.lap());
     return result;
 }
 

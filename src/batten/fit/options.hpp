@@ -40,12 +40,29 @@ struct MethodOptions {
     Initial initial = Initial::data;
     /// (N x dim) free control points, for Initial::given.
     PointSet control{};
+    /// Local PIA: only these control points move; empty: all.
+    std::vector<Index> moving{};
+};
+
+/// What of the initial polygon's shape a planar curve's iteration keeps at every step.
+enum class Preserve {
+    nothing,
+    convexity,   ///< a convex polygon stays convex
+    inflections, ///< no turn changes its sign, so no inflection comes or goes
+};
+
+/// What must hold exactly.
+struct HoldOptions {
+    /// Samples that the spline must pass through at their parameters.
+    std::vector<Index> interpolate{};
+    Preserve preserve = Preserve::nothing;
 };
 
 /// Everything a fit can be told; the defaults are what `batten fit` does.
 struct FitOptions {
     ShapeOptions shape{};
     MethodOptions method{};
+    HoldOptions hold{};
     StopRule stop{};
     /// Keep an entry per iteration in the report.
     bool keep_history = false;

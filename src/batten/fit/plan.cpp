@@ -40,23 +40,6 @@ KnotVector given_knots(const std::vector<double>& knots, int degree, Closure clo
     return result;
 }
 
-/// Index of the sample that starts control point i of n on an axis of m samples.
-Index start_sample(const KnotVector& knots, const std::vector<double>& t, Index i) {
-    const Index n = knots.free_count();
-    const auto m = static_cast<Index>(t.size());
-    if (!knots.closed()) // [HuangWang2020, eq. 38], whose last line has n for m
-        return i == n - 1 ? m - 1 : m * i / (n - 1);
-    double greville = 0;
-    for (Index k = i + 1; k <= i + knots.degree(); ++k) greville += knots[k] / knots.degree();
-    const double at = knots.wrapped(greville);
-    const auto after = std::ranges::lower_bound(t, at) - t.begin();
-    if (after == m) return m - 1;
-    return after > 0 && at - t[static_cast<std::size_t>(after - 1)] <
-                            t[static_cast<std::size_t>(after)] - at
-               ? after - 1
-               : after;
-}
-
 } // namespace
 
 AxisPlan plan_axes(const Samples& samples, const ShapeOptions& options) {
@@ -122,35 +105,6 @@ std::vector<KnotVector> choose_knots(const Parameters& parameters, const ShapeOp
         }));
     }
     return result;
-}
-
-PointSet initial_control(const Samples& samples, const Parameters& parameters,
-                         const std::vector<KnotVector>& axes, const MethodOptions& options) {
-    const std::vector<Index> shape = free_shape(axes);
-    Index total = 1;
-    for (Index n : shape) total *= n;
-    if (options.initial == Initial::given) {
-        if (options.control.size() != total || options.control.dim() != samples.dim())
-            throw InvalidInput(fmt::format(
-                "initial control points: {} of dimension {} given, {} of dimension {} needed",
-                options.control.size(), options.control.dim(), total, samples.dim()));
-        return options.control;
-    }
-    PointSet control(total, samples.dim());
-    if (options.initial == Initial::zero) return control;
-    const std::vector<Index> grid = samples.shape();
-    for (Index k = 0; k < total; ++k) {
-        Index rest = k;
-        Index sample = 0;
-        Index stride = 1;
-        for (std::size_t a = shape.size(); a-- > 0;) {
-            sample += start_sample(axes[a], parameters.axes[a], rest % shape[a]) * stride;
-            rest /= shape[a];
-            stride *= grid[a];
-        }
-        std::ranges::copy(samples.points[sample], control[k].begin());
-    }
-    return control;
 }
 
 } // namespace batten

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <batten/fit/options.hpp>
+#include <batten/system/sample_groups.hpp>
 
 namespace batten {
 
@@ -21,6 +22,10 @@ Parameters choose_parameters(const Samples& samples, const ShapeOptions& options
 /// The knots that the options give or rule, per axis; names the axis in what it throws.
 std::vector<KnotVector> choose_knots(const Parameters& parameters, const ShapeOptions& options,
                                      const AxisPlan& plan);
+
+/// Groups of a cloud's samples: each belongs to the control point whose Greville abscissae are
+/// nearest.
+SampleGroups nearest_groups(const Parameters& parameters, const std::vector<KnotVector>& axes);
 
 /// Free control points (N x dim) to start from.
 PointSet initial_control(const Samples& samples, const Parameters& parameters,

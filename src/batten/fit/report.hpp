@@ -14,6 +14,8 @@ struct HistoryEntry {
     Index iteration;
     double gradient_norm;
     double largest_move;
+    double max_deviation;    ///< of a sample at its parameter
+    double constraint_error; ///< sum of squares; 0 without constraints
 };
 
 /// What was fitted, how it went and how far the samples are: the same object for library, command
@@ -35,7 +37,10 @@ struct FitReport {
     double predicted_rate = 0; ///< 0 when the theory gives none
     double observed_rate = 0;  ///< 0 when the run was too short
     Deviation deviation;
-    double data_size = 0;                                ///< diagonal of the samples' box
+    Index interpolated = 0;      ///< samples that must be hit exactly
+    double constraint_error = 0; ///< largest distance from one of them
+    Index inflections = -1;      ///< of the control polygon, where they are kept; else -1
+    double data_size = 0;        ///< diagonal of the samples' box
     std::vector<std::pair<std::string, double>> seconds; ///< per stage, in order
     std::vector<HistoryEntry> history;
     std::vector<std::string> notes;

@@ -61,7 +61,8 @@ Summary iterate(Method& method, PointSet& control, const StopRule& stop,
         if (now.iterations == 0) now.first_gradient_norm = now.gradient_norm;
         norms.push_back(now.gradient_norm);
         if (!std::isfinite(now.gradient_norm)) return ended(Termination::breakdown);
-        const Iteration seen{now.iterations, control, now.gradient_norm, largest_move};
+        const Iteration seen{now.iterations, control, now.gradient_norm, largest_move,
+                             method.constraint_error()};
         if (hooks.observer && hooks.observer(seen) == Continue::no)
             return ended(Termination::cancelled);
         if (holds(stop, now, control, hooks)) return ended(Termination::converged);

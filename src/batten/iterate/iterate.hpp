@@ -38,6 +38,8 @@ struct Iteration {
     double gradient_norm;
     /// Length of the longest move made to get here, 0 at first.
     double largest_move;
+    /// Sum of squared constraint errors; 0 without constraints.
+    double constraint_error;
 };
 
 enum class Continue { yes, no };

@@ -32,6 +32,9 @@ class Method {
     /// The norm that the stop rule tests, at the control points of the last propose():
     /// the Frobenius norm of A^T(Q - AP), or of the method's own W(Q - AP) before step factors.
     virtual double gradient_norm() const = 0;
+    /// Sum of squared lengths of what the constraints lack at the last propose(); 0 without
+    /// constraints.
+    virtual double constraint_error() const { return 0; }
     /// The weights in use, known after start().
     virtual Settings settings() const { return {}; }
     /// Predicted factor by which the error falls per iteration, 0 when the theory gives none.

@@ -1,6 +1,7 @@
 #include <batten/iterate/methods.hpp>
 
 #include <batten/core/names.hpp>
+#include <batten/iterate/accelerated.hpp>
 #include <batten/iterate/conjugate_gradients.hpp>
 #include <batten/iterate/lspia.hpp>
 #include <batten/iterate/mlspia.hpp>
@@ -31,20 +32,46 @@ const std::vector<MethodEntry>& table() {
           {"gamma", "weight gamma (default eq. 27, 37)"},
           {"nu", "weight nu (default eq. 27, 37)"},
           eigenvalue_setting}},
+        {"clspia",
+         "LSPIA with Lagrange multipliers: exact at the interpolated samples",
+         "Chang, Ma, Deng 2023",
+         {{"mu", "outer step (default 2 / (beta_min + beta_max))"},
+          {"mu_1", "inverse inner step (default (gamma_min + gamma_max) / 2)"},
+          {"inner_tolerance",
+           "max |Delta| that ends the inner loop (default: 1e-3 of the constraint error at hand)"},
+          eigenvalue_setting}},
+        {"pia",
+         "progressive-iterative approximation: interpolates every sample",
+         "Lin, Wang, Dong 2004",
+         {{"weight", "factor of every move (default 1)"}}},
+        {"epia",
+         "PIA with groups of samples, knots added where the error is",
+         "Lin, Zhang 2011",
+         {{"eta", "validation threshold, eq. 47 (default 0.6)"},
+          {"t_c", "e_c below which a knot is inserted (default 1e-3 of the data's size)"},
+          {"rounds", "most rounds of the validation check (default 10)"},
+          {"smoothing", "widest Gaussian of the curvature, in samples (default 4)"},
+          {"exact", "1: keep the refined knots instead of regenerating them by eq. 38"}}},
         {"cg",
          "conjugate gradients, diagonally preconditioned",
          "Hestenes, Stiefel 1952",
          {{"plain", "1: without the preconditioner"}}},
+        {"chebyshev", "LSPIA with Chebyshev steps", "Golub, Varga 1961", {eigenvalue_setting}},
+        {"nesterov", "LSPIA with Nesterov's momentum", "Nesterov 2004", {eigenvalue_setting}},
+        {"barzilai-borwein",
+         "LSPIA with Barzilai-Borwein steps and a non-monotone search",
+         "Barzilai, Borwein 1988; Grippo, Lampariello, Lucidi 1986",
+         {{"memory", "energies that the search looks back on (default 10)"}}},
     };
     return all;
 }
+
+} // namespace
 
 double setting(const Settings& settings, const std::string& name, double otherwise) {
     const auto found = settings.find(name);
     return found == settings.end() ? otherwise : found->second;
 }
-
-} // namespace
 
 std::span<const MethodEntry> methods() {
     return table();
@@ -89,6 +116,11 @@ std::unique_ptr<Method> make_method(std::string_view name, const NormalSystem& s
         return std::make_unique<ConjugateGradients>(system, setting(settings, "plain", 0) != 0
                                                                 ? Preconditioner::none
                                                                 : Preconditioner::diagonal);
+    if (name == "chebyshev") return std::make_unique<Chebyshev>(system, accuracy);
+    if (name == "nesterov") return std::make_unique<Nesterov>(system, accuracy);
+    if (name == "barzilai-borwein")
+        return std::make_unique<BarzilaiBorwein>(
+            system, static_cast<int>(std::max(1.0, setting(settings, "memory", 10))));
     throw InvalidInput(fmt::format("method {} is no iteration on the normal equations", name));
 }
 

@@ -33,7 +33,11 @@ const MethodEntry& method_entry(std::string_view name);
 /// finite.
 void check_settings(const MethodEntry& entry, const Settings& settings);
 
-/// The iteration `name` on a normal system (not `auto` or `direct`, which are no iterations).
+/// The setting of that name, or `otherwise`.
+double setting(const Settings& settings, const std::string& name, double otherwise);
+
+/// The iteration `name` on a normal system alone: not `auto` or `direct`, which are no iterations,
+/// nor `pia`, `epia` and `clspia`, which need more than the system.
 std::unique_ptr<Method> make_method(std::string_view name, const NormalSystem& system,
                                     const Settings& settings);
 

@@ -49,7 +49,7 @@ double root_modulus(const MlspiaWeights& w, double sigma2) {
 Mlspia::Mlspia(const NormalSystem& system, MlspiaWeights weights, double eigenvalue_tolerance)
     : system_(system), weights_(weights), eigenvalue_tolerance_(eigenvalue_tolerance) {}
 
-void Mlspia::start(const PointSet&) {
+void Mlspia::start(const PointSet& control) {
     const ExtremeEigenvalues sigma2 = extreme_eigenvalues(system_, eigenvalue_tolerance_);
     complete(weights_, sigma2);
     check_region(weights_, sigma2.largest);
@@ -57,6 +57,11 @@ void Mlspia::start(const PointSet&) {
     // singular values
     rate_ = std::max({std::abs(1 - weights_.omega), root_modulus(weights_, sigma2.largest),
                       root_modulus(weights_, sigma2.smallest)});
+    if (last_.empty()) return;
+    PointSet before = control;
+    add_scaled(before, -1.0, last_);
+    last_delta_ = system_.gradient(before);
+    for (double& x : last_delta_.values()) x *= weights_.nu;
 }
 
 const PointSet& Mlspia::propose(const PointSet& control) {
@@ -81,11 +86,6 @@ const PointSet& Mlspia::propose(const PointSet& control) {
 void Mlspia::accept(const PointSet& moves) {
     last_ = moves;
     last_delta_ = delta_;
-}
-
-void Mlspia::resume(PointSet last_moves, PointSet last_delta) {
-    last_ = std::move(last_moves);
-    last_delta_ = std::move(last_delta);
 }
 
 Settings Mlspia::settings() const {

@@ -34,12 +34,12 @@ class Mlspia : public Method {
     Settings settings() const override;
     double predicted_rate() const override { return rate_; }
 
-    /// Delta^{k-1} and delta^{k-1}, to carry the memory over to another knot vector; empty before
-    /// the first move.
+    /// Delta^{k-1}: the moves that led to the present control points; empty before the first.
     const PointSet& last_moves() const { return last_; }
-    const PointSet& last_delta() const { return last_delta_; }
-    /// Continues with memory from an earlier run, (N x dim) each, instead of a fresh start.
-    void resume(PointSet last_moves, PointSet last_delta);
+    /// Continues with the memory of an earlier run instead of a fresh start, also after its knots
+    /// were refined: `last_moves` (N x dim) are the moves that led to the control points given to
+    /// start(), both refined alike.
+    void resume(PointSet last_moves) { last_ = std::move(last_moves); }
 
   private:
     const NormalSystem& system_;

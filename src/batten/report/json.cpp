@@ -18,7 +18,9 @@ Json history_json(const std::vector<HistoryEntry>& history) {
     for (const HistoryEntry& entry : history)
         rows.push_back({{"iteration", entry.iteration},
                         {"gradient_norm", number(entry.gradient_norm)},
-                        {"largest_move", number(entry.largest_move)}});
+                        {"largest_move", number(entry.largest_move)},
+                        {"max_deviation", number(entry.max_deviation)},
+                        {"constraint_error", number(entry.constraint_error)}});
     return rows;
 }
 
@@ -49,6 +51,11 @@ std::string FitReport::to_json() const {
         if (predicted_rate > 0) json["predicted_rate"] = predicted_rate;
         if (observed_rate > 0) json["observed_rate"] = observed_rate;
     }
+    if (interpolated > 0) {
+        json["interpolated"] = interpolated;
+        json["constraint_error"] = number(constraint_error);
+    }
+    if (inflections >= 0) json["inflections"] = inflections;
     json["data_size"] = data_size;
     json["seconds"] = Json::object();
     for (const auto& [stage, time] : seconds) json["seconds"][stage] = time;

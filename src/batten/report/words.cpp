@@ -59,6 +59,11 @@ std::string FitReport::full() const {
             line("rate", fmt::format("{:.4f} per iteration observed, {:.4f} predicted",
                                      observed_rate, predicted_rate));
     }
+    if (interpolated > 0)
+        line("exact", fmt::format("{} samples hit to {:.2g}", interpolated, constraint_error));
+    if (inflections >= 0)
+        line("shape",
+             fmt::format("{} inflections in the control polygon, as at the start", inflections));
     std::string stages;
     for (const auto& [stage, time] : seconds)
         stages += fmt::format("{}{} {:.2g}", stages.empty() ? "" : ", ", stage, time);

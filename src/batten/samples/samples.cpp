@@ -92,6 +92,17 @@ Samples height_samples(const Points& heights, std::array<Index, 2> shape,
     return {.points = std::move(points), .grid = {shape[0], shape[1]}};
 }
 
+std::vector<Index> end_samples(const Samples& samples) {
+    std::vector<Index> ends{0};
+    for (Index m : samples.shape()) {
+        std::vector<Index> next;
+        for (Index i : ends)
+            for (Index end : {Index{0}, m - 1}) next.push_back(i * m + end);
+        ends = std::move(next);
+    }
+    return ends;
+}
+
 PointSet bounding_box(const Points& points) {
     const Index dim = points.dim();
     PointSet box(2, dim);

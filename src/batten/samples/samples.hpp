@@ -35,6 +35,9 @@ void check(const Samples& samples);
 Samples height_samples(const Points& heights, std::array<Index, 2> shape,
                        std::array<double, 2> spacing);
 
+/// Indices of the ends: first and last sample of a sequence, the corners of a grid.
+std::vector<Index> end_samples(const Samples& samples);
+
 /// Lower and upper corner of the axis-parallel box of the points: (2 x dim).
 PointSet bounding_box(const Points& points);
 

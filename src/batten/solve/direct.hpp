@@ -1,11 +1,17 @@
 #pragma once
 
+#include <batten/system/constraints.hpp>
 #include <batten/system/normal_system.hpp>
 
 namespace batten {
 
-/// Least-squares control points (N x dim) relative to the system's centre, by banded Cholesky, axis
-/// by axis. Throws SolverError when the samples do not determine every control point.
+/// Least-squares control points (N x dim) relative to the system's centre.
+/// Throws SolverError when the samples do not determine every control point.
 PointSet solve_direct(const NormalSystem& system);
+
+/// The same under constraints C P = d (relative to the centre), from the saddle-point system
+/// [ChangMaDeng2023, eq. 1]: a solve per constraint and a small dense system for the multipliers.
+/// Throws as above, and InvalidInput as Constraints::check_independent does.
+PointSet solve_direct(const NormalSystem& system, const Constraints& constraints);
 
 } // namespace batten

@@ -26,25 +26,44 @@ Collocation::Collocation(const KnotVector& knots, std::span<const double> parame
 }
 
 PointSet Collocation::apply(const PointSet& x) const {
-    PointSet y(rows(), x.dim());
-    for (Index j = 0; j < rows(); ++j)
-        for (int r = 0; r <= degree_; ++r) {
-            const double w = value(j, r);
-            const auto in = x[column(j, r)];
-            for (Index d = 0; d < x.dim(); ++d) y(j, d) += w * in[static_cast<std::size_t>(d)];
-        }
-    return y;
+    return {apply_along(x.values(), x.dim()), x.dim()};
 }
 
 PointSet Collocation::apply_transposed(const PointSet& y) const {
-    PointSet x(columns_, y.dim());
-    for (Index j = 0; j < rows(); ++j)
-        for (int r = 0; r <= degree_; ++r) {
-            const double w = value(j, r);
-            const Index c = column(j, r);
-            for (Index d = 0; d < y.dim(); ++d) x(c, d) += w * y(j, d);
-        }
-    return x;
+    return {apply_transposed_along(y.values(), y.dim()), y.dim()};
+}
+
+namespace {
+
+void add_row(double* y, double factor, const double* x, Index count) {
+    for (Index k = 0; k < count; ++k) y[k] += factor * x[k];
+}
+
+} // namespace
+
+std::vector<double> Collocation::apply_along(const std::vector<double>& values, Index inner) const {
+    const Index outer = static_cast<Index>(values.size()) / (columns_ * inner);
+    std::vector<double> result(static_cast<std::size_t>(outer * rows() * inner));
+    for_each_chunk(outer, [&](Index o) {
+        for (Index j = 0; j < rows(); ++j)
+            for (int r = 0; r <= degree_; ++r)
+                add_row(result.data() + (o * rows() + j) * inner, value(j, r),
+                        values.data() + (o * columns_ + column(j, r)) * inner, inner);
+    });
+    return result;
+}
+
+std::vector<double> Collocation::apply_transposed_along(const std::vector<double>& values,
+                                                        Index inner) const {
+    const Index outer = static_cast<Index>(values.size()) / (rows() * inner);
+    std::vector<double> result(static_cast<std::size_t>(outer * columns_ * inner));
+    for_each_chunk(outer, [&](Index o) {
+        for (Index j = 0; j < rows(); ++j)
+            for (int r = 0; r <= degree_; ++r)
+                add_row(result.data() + (o * columns_ + column(j, r)) * inner, value(j, r),
+                        values.data() + (o * rows() + j) * inner, inner);
+    });
+    return result;
 }
 
 namespace {

@@ -32,6 +32,11 @@ class Collocation {
     PointSet apply(const PointSet& x) const;
     /// A^T y for y (m x dim): (n x dim).
     PointSet apply_transposed(const PointSet& y) const;
+    /// A along the middle axis of values (outer x n x inner): (outer x m x inner).
+    std::vector<double> apply_along(const std::vector<double>& values, Index inner) const;
+    /// A^T along the middle axis of values (outer x m x inner): (outer x n x inner).
+    std::vector<double> apply_transposed_along(const std::vector<double>& values,
+                                               Index inner) const;
 
   private:
     int degree_;

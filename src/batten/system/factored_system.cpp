@@ -13,25 +13,6 @@ void add_gram_row(BandedMatrix& gram, const Collocation& a, Index j, double weig
             gram.at(a.column(j, r), s - r) += weight * a.value(j, r) * a.value(j, s);
 }
 
-/// Contracts the axis in the middle: in (outer x m x inner) -> out (outer x n x inner), out = A^T
-/// in.
-std::vector<double> contract(const Collocation& a, const std::vector<double>& in, Index inner) {
-    const Index m = a.rows();
-    const Index n = a.columns();
-    const Index outer = static_cast<Index>(in.size()) / (m * inner);
-    std::vector<double> out(static_cast<std::size_t>(outer * n * inner));
-    for_each_chunk(outer, [&](Index o) {
-        for (Index j = 0; j < m; ++j)
-            for (int r = 0; r <= a.degree(); ++r) {
-                const double w = a.value(j, r);
-                const double* from = in.data() + (o * m + j) * inner;
-                double* to = out.data() + (o * n + a.column(j, r)) * inner;
-                for (Index k = 0; k < inner; ++k) to[k] += w * from[k];
-            }
-    });
-    return out;
-}
-
 } // namespace
 
 FactoredSystem::FactoredSystem(std::vector<KnotVector> axes, std::vector<double> centre,
@@ -76,7 +57,7 @@ void FactoredSystem::finish() {
     std::vector<double> values = std::move(slices_sum_);
     Index inner = dim();
     for (std::size_t k = axes_.size(); k-- > 1;) {
-        values = contract(collocations_[k], values, inner);
+        values = collocations_[k].apply_transposed_along(values, inner);
         inner *= axes_[k].free_count();
     }
     rhs_ = PointSet(std::move(values), dim());

@@ -1,6 +1,7 @@
 #include <batten/system/normal_system.hpp>
 
 #include <batten/system/factored_system.hpp>
+#include <batten/system/stencil_system.hpp>
 
 #include <fmt/format.h>
 
@@ -44,11 +45,40 @@ double NormalSystem::energy(const PointSet& control) const {
     return -inner_product(control, sum);
 }
 
+namespace {
+
+/// The grid's parameters, one row per sample.
+PointSet scattered_parameters(const Parameters& parameters, Index count) {
+    PointSet rows(count, parameters.axis_count());
+    for (Index i = 0; i < count; ++i) {
+        Index rest = i;
+        for (Index k = parameters.axis_count(); k-- > 0;) {
+            const auto& t = parameters.axes[static_cast<std::size_t>(k)];
+            const auto m = static_cast<Index>(t.size());
+            rows(i, k) = t[static_cast<std::size_t>(rest % m)];
+            rest /= m;
+        }
+    }
+    return rows;
+}
+
+} // namespace
+
 std::unique_ptr<NormalSystem> assemble(const std::vector<KnotVector>& axes, const Samples& samples,
                                        const Parameters& parameters) {
     const auto origin = samples.points[0];
-    auto system = std::make_unique<FactoredSystem>(
-        axes, std::vector<double>(origin.begin(), origin.end()), parameters);
+    const std::vector<double> centre(origin.begin(), origin.end());
+    const bool weighted_grid = axes.size() > 1 && !samples.weights.empty();
+    if (parameters.is_scattered() || weighted_grid) {
+        auto system = std::make_unique<StencilSystem>(axes, centre);
+        const PointSet expanded = parameters.is_scattered()
+                                      ? PointSet()
+                                      : scattered_parameters(parameters, samples.size());
+        system->add(samples.points, parameters.is_scattered() ? parameters.scattered : expanded,
+                    samples.weights);
+        return system;
+    }
+    auto system = std::make_unique<FactoredSystem>(axes, centre, parameters);
     system->add(0, samples.points, samples.weights);
     system->finish();
     return system;

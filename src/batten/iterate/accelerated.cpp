@@ -1,0 +1,123 @@
+#include <batten/iterate/accelerated.hpp>
+
+#include <batten/solve/extreme_eigenvalues.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace batten {
+
+namespace {
+
+/// Eigenvalues known to `tolerance` only, widened so that the interval surely holds the spectrum.
+ExtremeEigenvalues widened(const NormalSystem& system, double tolerance) {
+    const ExtremeEigenvalues e = extreme_eigenvalues(system, tolerance);
+    return {e.largest * (1 + tolerance), e.smallest * (1 - tolerance)};
+}
+
+void scale(PointSet& x, double factor) {
+    for (double& value : x.values()) value *= factor;
+}
+
+} // namespace
+
+Chebyshev::Chebyshev(const NormalSystem& system, double eigenvalue_tolerance)
+    : system_(system), eigenvalue_tolerance_(eigenvalue_tolerance) {}
+
+void Chebyshev::start(const PointSet&) {
+    const ExtremeEigenvalues e = widened(system_, eigenvalue_tolerance_);
+    centre_ = (e.largest + e.smallest) / 2;
+    radius_ = (e.largest - e.smallest) / 2;
+    const double root = std::sqrt(e.largest / e.smallest);
+    rate_ = (root - 1) / (root + 1);
+    last_ = {};
+}
+
+const PointSet& Chebyshev::propose(const PointSet& control) {
+    moves_ = system_.gradient(control);
+    norm_ = frobenius_norm(moves_);
+    if (last_.empty()) {
+        rho_ = radius_ / centre_;
+        scale(moves_, 1 / centre_);
+        return moves_;
+    }
+    // three-term recurrence: rho' = 1 / (2 centre / radius - rho), move' = rho' rho move + 2 rho' /
+    // radius gradient
+    if (!(radius_ > 0)) { // one eigenvalue only
+        scale(moves_, 1 / centre_);
+        return moves_;
+    }
+    const double next = 1 / (2 * centre_ / radius_ - rho_);
+    scale(moves_, 2 * next / radius_);
+    add_scaled(moves_, next * rho_, last_);
+    rho_ = next;
+    return moves_;
+}
+
+Nesterov::Nesterov(const NormalSystem& system, double eigenvalue_tolerance)
+    : system_(system), eigenvalue_tolerance_(eigenvalue_tolerance) {}
+
+void Nesterov::start(const PointSet&) {
+    const ExtremeEigenvalues e = widened(system_, eigenvalue_tolerance_);
+    step_ = 1 / e.largest;
+    const double root = std::sqrt(e.largest / e.smallest);
+    momentum_ = (root - 1) / (root + 1);
+    last_ = {};
+}
+
+const PointSet& Nesterov::propose(const PointSet& control) {
+    gradient_ = system_.gradient(control);
+    norm_ = frobenius_norm(gradient_);
+    moves_ = gradient_;
+    if (!last_.empty()) { // the gradient ahead, at y = P + momentum * (last move), is linear in the
+                          // move
+        PointSet image(system_.size(), system_.dim());
+        system_.apply(last_, image);
+        add_scaled(moves_, -momentum_, image);
+    }
+    scale(moves_, step_);
+    if (!last_.empty()) add_scaled(moves_, momentum_, last_);
+    return moves_;
+}
+
+BarzilaiBorwein::BarzilaiBorwein(const NormalSystem& system, int memory)
+    : system_(system), memory_(memory) {}
+
+void BarzilaiBorwein::start(const PointSet&) {
+    image_ = PointSet(system_.size(), system_.dim());
+    moves_image_ = image_;
+    energy_ = 0;
+    energies_ = {0};
+    step_ = 0;
+}
+
+const PointSet& BarzilaiBorwein::propose(const PointSet& control) {
+    constexpr double sufficient = 1e-4;
+    gradient_ = system_.gradient(control);
+    const double square = inner_product(gradient_, gradient_);
+    norm_ = std::sqrt(square);
+    system_.apply(gradient_, image_);
+    const double curvature = inner_product(gradient_, image_);
+    if (step_ == 0) step_ = curvature > 0 ? square / curvature : 0;
+    // energy differences through the gradient: E(P + a g) - E(P) = -2 a |g|^2 + a^2 <g, N g>
+    const double allowed = *std::max_element(energies_.begin(), energies_.end());
+    while (energy_ - 2 * step_ * square + step_ * step_ * curvature >
+               allowed - sufficient * step_ * square &&
+           step_ * curvature > 1e-12 * square)
+        step_ /= 2;
+    moves_ = gradient_;
+    scale(moves_, step_);
+    return moves_;
+}
+
+void BarzilaiBorwein::accept(const PointSet& moves) {
+    system_.apply(moves, moves_image_);
+    const double length = inner_product(moves, moves);
+    const double curvature = inner_product(moves, moves_image_);
+    energy_ += curvature - 2 * inner_product(moves, gradient_);
+    energies_.push_back(energy_);
+    if (static_cast<int>(energies_.size()) > memory_) energies_.pop_front();
+    step_ = curvature > 0 ? length / curvature : 0;
+}
+
+} // namespace batten

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <batten/iterate/method.hpp>
+#include <batten/system/normal_system.hpp>
+
+#include <deque>
+
+namespace batten {
+
+/// LSPIA whose steps follow the Chebyshev polynomials of the interval [sigma_r^2, sigma_1^2]
+/// [GolubVarga1961].
+class Chebyshev : public Method {
+  public:
+    explicit Chebyshev(const NormalSystem& system, double eigenvalue_tolerance = 1e-2);
+    std::string_view name() const override { return "chebyshev"; }
+    void start(const PointSet& control) override;
+    const PointSet& propose(const PointSet& control) override;
+    void accept(const PointSet& moves) override { last_ = moves; }
+    double gradient_norm() const override { return norm_; }
+    Settings settings() const override {
+        return {{"largest", centre_ + radius_}, {"smallest", centre_ - radius_}};
+    }
+    double predicted_rate() const override { return rate_; }
+
+  private:
+    const NormalSystem& system_;
+    double eigenvalue_tolerance_;
+    double centre_ = 0; // of the eigenvalues' interval
+    double radius_ = 0;
+    double rho_ = 0; // ratio of consecutive Chebyshev polynomials
+    double rate_ = 0;
+    double norm_ = 0;
+    PointSet moves_;
+    PointSet last_;
+};
+
+/// LSPIA with Nesterov's momentum for strongly convex functions [Nesterov2004, section 2.2].
+class Nesterov : public Method {
+  public:
+    explicit Nesterov(const NormalSystem& system, double eigenvalue_tolerance = 1e-2);
+    std::string_view name() const override { return "nesterov"; }
+    void start(const PointSet& control) override;
+    const PointSet& propose(const PointSet& control) override;
+    void accept(const PointSet& moves) override { last_ = moves; }
+    double gradient_norm() const override { return norm_; }
+    Settings settings() const override { return {{"step", step_}, {"momentum", momentum_}}; }
+
+  private:
+    const NormalSystem& system_;
+    double eigenvalue_tolerance_;
+    double step_ = 0;
+    double momentum_ = 0;
+    double norm_ = 0;
+    PointSet gradient_;
+    PointSet moves_;
+    PointSet last_;
+};
+
+/// LSPIA with Barzilai-Borwein steps [BarzilaiBorwein1988] and the non-monotone search of
+/// [GrippoLamparielloLucidi1986] over the last `memory` energies. Needs no eigenvalues.
+class BarzilaiBorwein : public Method {
+  public:
+    explicit BarzilaiBorwein(const NormalSystem& system, int memory = 10);
+    std::string_view name() const override { return "barzilai-borwein"; }
+    void start(const PointSet& control) override;
+    const PointSet& propose(const PointSet& control) override;
+    void accept(const PointSet& moves) override;
+    double gradient_norm() const override { return norm_; }
+    Settings settings() const override { return {{"memory", static_cast<double>(memory_)}}; }
+
+  private:
+    const NormalSystem& system_;
+    int memory_;
+    double step_ = 0;   // of the next move
+    double energy_ = 0; // relative to the start
+    double norm_ = 0;
+    std::deque<double> energies_;
+    PointSet gradient_;
+    PointSet image_; // A^T D A gradient
+    PointSet moves_;
+    PointSet moves_image_;
+};
+
+} // namespace batten

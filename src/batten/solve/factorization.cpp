@@ -1,0 +1,73 @@
+#include <batten/solve/factorization.hpp>
+
+#include <batten/solve/banded_cholesky.hpp>
+#include <batten/system/stencil_system.hpp>
+
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+#include <fmt/format.h>
+
+namespace batten {
+
+namespace {
+
+/// One banded factor per axis.
+class AxisFactorization : public Factorization {
+  public:
+    explicit AxisFactorization(const std::vector<const BandedMatrix*>& factors) {
+        for (const BandedMatrix* factor : factors) {
+            axes_.emplace_back(*factor);
+            sizes_.push_back(factor->size());
+        }
+    }
+    PointSet solve(PointSet b) const override {
+        Index inner = b.dim();
+        for (std::size_t k = axes_.size(); k-- > 0;) {
+            axes_[k].solve(b.data(),
+                           {static_cast<Index>(b.values().size()) / (sizes_[k] * inner), inner});
+            inner *= sizes_[k];
+        }
+        return b;
+    }
+
+  private:
+    std::vector<BandedCholesky> axes_;
+    std::vector<Index> sizes_;
+};
+
+class SparseFactorization : public Factorization {
+  public:
+    explicit SparseFactorization(const StencilSystem& system) {
+        std::vector<Eigen::Triplet<double>> entries;
+        system.for_each_entry([&](Index i, Index j, double value) {
+            if (i >= j) entries.emplace_back(static_cast<int>(i), static_cast<int>(j), value);
+        });
+        Eigen::SparseMatrix<double> matrix(system.size(), system.size());
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        solver_.compute(matrix);
+        const bool good = solver_.info() == Eigen::Success;
+        const auto& pivots = solver_.vectorD();
+        if (!good || !(pivots.minCoeff() > 1e-14 * pivots.maxCoeff()))
+            throw SolverError("the normal equations are singular: some control points are not "
+                              "determined by the samples");
+    }
+    PointSet solve(PointSet b) const override {
+        using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+        Eigen::Map<Rows> rows(b.data(), b.size(), b.dim());
+        rows = solver_.solve(Eigen::MatrixXd(rows));
+        return b;
+    }
+
+  private:
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
+};
+
+} // namespace
+
+std::unique_ptr<Factorization> factorize(const NormalSystem& system) {
+    const auto factors = system.factors();
+    if (!factors.empty()) return std::make_unique<AxisFactorization>(factors);
+    return std::make_unique<SparseFactorization>(dynamic_cast<const StencilSystem&>(system));
+}
+
+} // namespace batten

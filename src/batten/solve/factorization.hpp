@@ -1,0 +1,24 @@
+#pragma once
+
+#include <batten/system/normal_system.hpp>
+
+#include <memory>
+
+namespace batten {
+
+/// A Cholesky factorisation of a normal system, to solve many right-hand sides with.
+class Factorization {
+  public:
+    virtual ~Factorization() = default;
+    Factorization() = default;
+    Factorization(const Factorization&) = delete;
+    Factorization& operator=(const Factorization&) = delete;
+    /// (A^T D A)^{-1} b for b (N x dim).
+    virtual PointSet solve(PointSet b) const = 0;
+};
+
+/// Banded Cholesky axis by axis where the system has factors, sparse Cholesky for scattered
+/// samples. Throws SolverError when the samples do not determine every control point.
+std::unique_ptr<Factorization> factorize(const NormalSystem& system);
+
+} // namespace batten

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <batten/parametrize/parametrize.hpp>
+#include <batten/spline/spline.hpp>
+
+#include <string>
+#include <vector>
+
+namespace batten {
+
+/// Linear equalities C P = d that a fit must meet exactly: one row per constraint, sparse over the
+/// control points.
+class Constraints {
+  public:
+    explicit Constraints(Index dim = 0) : values_(0, dim) {}
+
+    Index size() const { return static_cast<Index>(rows_.size()); }
+    bool empty() const { return rows_.empty(); }
+    /// Right-hand sides d, (k x dim).
+    const PointSet& values() const { return values_; }
+    const std::string& name(Index row) const { return names_[static_cast<std::size_t>(row)]; }
+
+    /// Adds: the derivative of the given orders (0 each: the point) at `parameter` equals `value`.
+    /// `name` is what messages call it.
+    void add(const std::vector<KnotVector>& axes, std::span<const double> parameter,
+             std::span<const int> orders, std::span<const double> value, std::string name);
+
+    /// C P: (k x dim).
+    PointSet apply(const PointSet& control) const;
+    /// C^T y: (n x dim) for n control points.
+    PointSet apply_transposed(const PointSet& y, Index controls) const;
+    /// The same constraints for control points and values relative to `centre` (rows of positions
+    /// only shift).
+    Constraints centred(const std::vector<double>& centre) const;
+
+    /// Throws InvalidInput when there are more constraints than control points, or some depend on
+    /// each other: then a smallest such set is named, as contradicting or as saying the same.
+    void check_independent(Index controls) const;
+
+  private:
+    struct Entry {
+        Index control;
+        double value;
+    };
+    std::vector<std::vector<Entry>> rows_;
+    std::vector<double> sums_; // of a row's entries: 1 for a position, 0 for a derivative
+    std::vector<std::string> names_;
+    PointSet values_;
+};
+
+/// The samples with the given indices as position constraints at their own parameters.
+/// Throws InvalidInput for an index out of range or given twice.
+Constraints interpolate_samples(const std::vector<KnotVector>& axes, const Samples& samples,
+                                const Parameters& parameters, const std::vector<Index>& indices);
+
+/// Parameter of sample `i`, one per axis.
+std::vector<double> parameter_of(const Parameters& parameters, Index i);
+
+} // namespace batten

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <batten/parametrize/parametrize.hpp>
+#include <batten/spline/spline.hpp>
+#include <batten/system/collocation.hpp>
+
+#include <vector>
+
+namespace batten {
+
+/// A run of consecutive samples along an axis, [begin, end).
+struct SampleRange {
+    Index begin;
+    Index end;
+};
+
+/// Which samples' residuals move which control point: W of PIA (the control point's own sample) and
+/// of EPIA (the mean over the control point's group [LinZhang2011, eq. 9 and 22]).
+class SampleGroups {
+  public:
+    /// A sequence or grid: per axis and control point a run of samples; a grid's groups are
+    /// products of runs. Throws InvalidInput naming a control point whose run is empty or beyond
+    /// the samples.
+    SampleGroups(std::vector<std::vector<SampleRange>> ranges, const std::vector<Index>& shape);
+    /// A cloud: the control point of every sample; throws InvalidInput naming one without samples.
+    SampleGroups(std::vector<Index> owner, Index controls);
+
+    /// Control points N.
+    Index size() const { return static_cast<Index>(count_.size()); }
+    /// Means over the groups of per-sample values (m x dim): (N x dim).
+    PointSet means(const PointSet& values) const;
+    /// Calls `member(control, sample)` for every member of every group.
+    template <class Member>
+    void for_each_member(Member member) const;
+
+  private:
+    std::vector<std::vector<SampleRange>> ranges_;
+    std::vector<Index> shape_;
+    std::vector<Index> owner_;
+    std::vector<double> count_;
+};
+
+/// The residual Q - A P of every sample and its image W(Q - A P): the data-side form of a geometric
+/// iteration.
+class DataSide {
+  public:
+    DataSide(std::vector<KnotVector> axes, const Samples& samples, const Parameters& parameters,
+             SampleGroups groups);
+
+    /// Q - A P for free control points P (N x dim): (m x dim).
+    PointSet residual(const PointSet& control) const;
+    const SampleGroups& groups() const { return groups_; }
+    const std::vector<KnotVector>& axes() const { return axes_; }
+    Index dim() const { return samples_.dim(); }
+
+  private:
+    std::vector<KnotVector> axes_;
+    const Samples& samples_;
+    const Parameters& parameters_;
+    std::vector<Collocation> collocations_;
+    SampleGroups groups_;
+};
+
+template <class Member>
+void SampleGroups::for_each_member(Member member) const {
+    if (!owner_.empty()) {
+        for (std::size_t j = 0; j < owner_.size(); ++j) member(owner_[j], static_cast<Index>(j));
+        return;
+    }
+    const auto visit = [&](auto&& self, std::size_t axis, Index control, Index sample) -> void {
+        if (axis == ranges_.size()) return member(control, sample);
+        const auto n = static_cast<Index>(ranges_[axis].size());
+        for (Index i = 0; i < n; ++i) {
+            const SampleRange range = ranges_[axis][static_cast<std::size_t>(i)];
+            for (Index j = range.begin; j < range.end; ++j)
+                self(self, axis + 1, control * n + i, sample * shape_[axis] + j);
+        }
+    };
+    visit(visit, 0, 0, 0);
+}
+
+} // namespace batten

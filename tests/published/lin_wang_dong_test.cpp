@@ -1,0 +1,133 @@
+// Lin, Wang, Dong 2004, PIA. The paper's helix and peaks data are not given to the digit; the
+// errors expected here are of the same formulas computed independently, the paper's Table 1 stands
+// beside them.
+#include "problems.hpp"
+
+#include <batten/shape/polygon.hpp>
+#include <numbers>
+
+namespace batten {
+namespace {
+
+/// Largest deviation after 0, 2, 4, 15 and 30 steps.
+std::vector<double> errors(const Samples& samples) {
+    FitOptions options;
+    options.method.name = "pia";
+    options.stop = {.max_iterations = 30, .relative_gradient = 0};
+    options.keep_history = true;
+    const FitResult result = fit(samples, options);
+    std::vector<double> kept;
+    for (std::size_t k : {0U, 2U, 4U, 15U, 30U})
+        kept.push_back(result.report.history.at(k).max_deviation);
+    return kept;
+}
+
+TEST(LinWangDong, helix_of_20_points) {
+    PointSet q(20, 3);
+    for (Index i = 0; i < 20; ++i) {
+        const double t = 8 * std::numbers::pi * static_cast<double>(i) / 19;
+        q(i, 0) = 6 * std::cos(t);
+        q(i, 1) = 6 * std::sin(t);
+        q(i, 2) = 2 * t;
+    }
+    const double expected[] = {1.9600035545, 0.30703252999, 0.068938778514, 2.2082744728e-4,
+                               2.6628015e-7}; // paper, 4 digits at step 0: 1.9603
+    const auto found = errors(testing::sequence(q));
+    for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(found[k] / expected[k], 1, k < 4 ? 1e-9 : 1e-7);
+}
+
+TEST(LinWangDong, peaks_surface_30_x_30) {
+    const double expected[] = {0.41452893083, 0.10532418316, 0.041022801923, 5.3318778318e-4,
+                               3.2047377e-5};
+    const auto found = errors(generate("peaks", {30, 30}));
+    for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(found[k] / expected[k], 1, 1e-7);
+}
+
+TEST(LinWangDong, the_limit_interpolates_and_local_pia_interpolates_its_part) {
+    const Samples rose = generate("rose", {40});
+    FitOptions options;
+    options.method.name = "pia";
+    const FitResult all = fit(rose, options);
+    EXPECT_LT(all.report.deviation.maximum, 1e-8);
+    EXPECT_NEAR(all.report.observed_rate, all.report.predicted_rate,
+                2e-2); // power iteration on a matrix that is not symmetric
+    options.method.moving = {11, 12, 13, 14, 15}; // the control points of samples 10 to 14
+    const FitResult part = fit(rose, options);
+    const auto d = parametric_deviations(part.spline, rose, part.parameters);
+    for (std::size_t j = 10; j < 15; ++j) EXPECT_LT(d[j], 1e-8);
+    EXPECT_GT(d[20], 1e-4);
+}
+
+TEST(LinWangDong, any_square_collocation_and_any_weight) {
+    const Samples rose = generate("rose", {30});
+    for (int degree : {1, 2, 4}) {
+        FitOptions options;
+        options.method.name = "pia";
+        options.shape.degree = {degree};
+        options.shape.control_points = {30};
+        options.method.settings = {{"weight", 1.2}};
+        options.stop.max_iterations = 100000;
+        EXPECT_LT(fit(rose, options).report.deviation.maximum, 1e-7) << degree;
+    }
+    FitOptions options;
+    options.method.name = "pia";
+    options.shape.control_points = {20};
+    EXPECT_EQ(testing::message_of<InvalidInput>([&] { fit(rose, options); }),
+              "axis 0: pia needs as many control points as samples, got 20 and 30");
+}
+
+/// Points of a convex arc at random angles and radii that keep it convex: on an ellipse, unevenly.
+Samples convex_polygon(unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> step(0.05, 1);
+    std::vector<double> angle{0};
+    for (int i = 0; i < 11; ++i) angle.push_back(angle.back() + step(random));
+    PointSet q(12, 2);
+    for (Index i = 0; i < 12; ++i) {
+        const double a = angle[static_cast<std::size_t>(i)] / angle.back() * 1.8 * std::numbers::pi;
+        q(i, 0) = 3 * std::cos(a);
+        q(i, 1) = std::sin(a);
+    }
+    return testing::sequence(q);
+}
+
+TEST(LinWangDong, convexity_preserving_pia_keeps_every_turn) {
+    int lost = 0;
+    int locked = 0;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        const Samples q = convex_polygon(seed);
+        FitOptions options;
+        options.method.name = "pia";
+        options.stop = {.max_iterations = 30, .relative_gradient = 0};
+        const std::vector<int> wanted = turn_signs(PointSet(q.points));
+        bool plain_lost = false;
+        options.observer = [&](const Iteration& now) {
+            plain_lost = plain_lost || turn_signs(now.control) != wanted;
+            return Continue::yes;
+        };
+        fit(q, options);
+        if (!plain_lost) continue;
+        ++lost;
+        options.hold.preserve = Preserve::convexity;
+        options.stop.max_iterations = 500;
+        options.keep_history = true;
+        Index broken = 0;
+        options.observer = [&](const Iteration& now) {
+            broken += turn_signs(now.control) != wanted ? 1 : 0;
+            return Continue::yes;
+        };
+        const FitResult kept = fit(q, options);
+        EXPECT_EQ(broken, 0) << seed;
+        const auto& history = kept.report.history;
+        EXPECT_LT(history.back().gradient_norm, history.front().gradient_norm);
+        for (std::size_t k = 1; k < history.size(); ++k)
+            EXPECT_LE(history[k].gradient_norm, history[k - 1].gradient_norm * (1 + 1e-12))
+                << seed << " step " << k;
+        if (kept.report.termination == Termination::stalled) ++locked;
+    }
+    EXPECT_GT(lost, 15); // about half of random polygons
+    EXPECT_GT(locked, 0);
+}
+
+} // namespace
+} // namespace batten

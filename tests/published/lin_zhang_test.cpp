@@ -1,0 +1,106 @@
+// Lin, Zhang 2011, EPIA. The paper's glyph is not public: glyph273.csv is nearly it, with raw
+// corners.
+#include "problems.hpp"
+
+#include <filesystem>
+
+namespace batten {
+namespace {
+
+std::string shared(const std::string& name) {
+    return std::string(BATTEN_SHARED_DATA) + "/" + name;
+}
+
+FitOptions epia(double deviation, double eta) {
+    FitOptions options;
+    options.method.name = "epia";
+    options.method.settings = {{"eta", eta}};
+    options.stop = {.max_iterations = 100, .relative_gradient = 0, .deviation = deviation};
+    options.keep_history = true;
+    return options;
+}
+
+TEST(LinZhang, glyph_to_0_0035_within_100_iterations) {
+    if (!std::filesystem::exists(shared("glyph273.csv")))
+        GTEST_SKIP() << "shared data absent: glyph273.csv";
+    const Samples glyph = read_points(shared("glyph273.csv"));
+    for (const auto& [eta, most] : {std::pair{0.6, 90}, std::pair{0.9, 110}}) {
+        const FitResult result = fit(glyph, epia(0.0035, eta));
+        EXPECT_EQ(result.report.termination, Termination::tolerance_met) << eta;
+        EXPECT_LE(result.report.deviation.maximum, 0.0035) << eta;
+        EXPECT_LE(result.report.control_shape[0], most) << eta;
+        EXPECT_LE(result.report.iterations, 100);
+        EXPECT_EQ(result.report.history.size(),
+                  static_cast<std::size_t>(result.report.iterations) + 1);
+    }
+    FitOptions exact = epia(0.0035, 0.6);
+    exact.method.settings["exact"] = 1;
+    exact.stop.max_iterations = 300;
+    EXPECT_LE(fit(glyph, exact).report.deviation.maximum, 0.0035);
+}
+
+TEST(LinZhang, a_chosen_sample_is_interpolated) {
+    if (!std::filesystem::exists(shared("profile205.csv")))
+        GTEST_SKIP() << "shared data absent: profile205.csv";
+    const Samples profile = read_points(shared("profile205.csv"));
+    FitOptions options = epia(0, 0);
+    options.shape.control_points = {
+        4}; // never more than the dominant points: as in Fig. 2 the count is fixed
+    options.method.settings["rounds"] = 0;
+    options.hold.interpolate = {100};
+    options.stop.max_iterations = 0;
+    const FitResult before = fit(profile, options);
+    options.stop.max_iterations = 10;
+    const FitResult after = fit(profile, options);
+    EXPECT_EQ(before.report.control_shape, after.report.control_shape);
+    EXPECT_GT(before.report.constraint_error,
+              10 * after.report.constraint_error); // paper: 0.1265 to 0.0097
+    EXPECT_GT(before.report.constraint_error, 0);
+}
+
+TEST(LinZhang, patch_of_peaks_improves_twentyfold_in_100_iterations) {
+    FitOptions options = epia(1e-9, 0.6);
+    const FitResult result = fit(generate("peaks", {121, 161}), options);
+    EXPECT_LE(result.report.control_shape[0], 68);
+    EXPECT_LE(result.report.control_shape[1], 90);
+    EXPECT_EQ(result.report.iterations, 100);
+    EXPECT_GT(result.report.history.front().max_deviation /
+                  result.report.history.back().max_deviation,
+              20); // paper: 0.053347 to 0.002576
+}
+
+TEST(LinZhang, a_cloud_with_parameters_converges) {
+    std::mt19937_64 random(2);
+    std::uniform_real_distribution<double> unit(0, 1);
+    PointSet q(3000, 3);
+    PointSet uv(3000, 2);
+    for (Index i = 0; i < 3000; ++i) {
+        uv(i, 0) = q(i, 0) = unit(random);
+        uv(i, 1) = q(i, 1) = unit(random);
+        q(i, 2) = std::sin(4 * q(i, 0)) * q(i, 1);
+    }
+    FitOptions options = epia(0, 0.6);
+    options.shape.control_points = {10, 9};
+    options.shape.parameters = Parameters{{}, uv};
+    options.stop = {.max_iterations = 3000, .relative_gradient = 1e-8};
+    const FitResult result = fit(testing::sequence(q), options);
+    EXPECT_EQ(result.report.termination, Termination::converged);
+    EXPECT_LT(result.report.deviation.maximum, 5e-3);
+}
+
+TEST(LinZhang, refusals) {
+    const Samples rose = generate("rose");
+    FitOptions options = epia(0, 0.6);
+    EXPECT_EQ(
+        testing::message_of<InvalidInput>([&] { fit(rose, options); }),
+        "epia: state where to stop: a deviation (--stop-deviation) or a number of control points");
+    options.shape.control_points = {30};
+    options.shape.parameters = Parameters{{}, PointSet({0, 0, 1, 1}, 2)};
+    Samples two;
+    two.points = Points(PointSet({0, 0, 1, 1}, 2));
+    EXPECT_EQ(testing::message_of<InvalidInput>([&] { fit(two, options); }),
+              "the group of control point 1 would hold no samples");
+}
+
+} // namespace
+} // namespace batten
