@@ -60,7 +60,7 @@ TEST(LinWangDong, the_limit_interpolates_and_local_pia_interpolates_its_part) {
 
 TEST(LinWangDong, any_square_collocation_and_any_weight) {
     const Samples rose = generate("rose", {30});
-    for (int degree : {1, 2, 4}) {
+    for (int degree : {1, 2, 3, 4}) {
         FitOptions options;
         options.method.name = "pia";
         options.shape.degree = {degree};

@@ -47,7 +47,7 @@ TEST(LinZhang, a_chosen_sample_is_interpolated) {
     options.shape.control_points = {
         4}; // never more than the dominant points: as in Fig. 2 the count is fixed
     options.method.settings["rounds"] = 0;
-    options.hold.interpolate = {100};
+    options.hold.interpolate = {60};
     options.stop.max_iterations = 0;
     const FitResult before = fit(profile, options);
     options.stop.max_iterations = 10;
@@ -59,7 +59,7 @@ TEST(LinZhang, a_chosen_sample_is_interpolated) {
 }
 
 TEST(LinZhang, patch_of_peaks_improves_twentyfold_in_100_iterations) {
-    FitOptions options = epia(1e-9, 0.6);
+    FitOptions options = epia(0.01, 0.6);
     const FitResult result = fit(generate("peaks", {121, 161}), options);
     EXPECT_LE(result.report.control_shape[0], 68);
     EXPECT_LE(result.report.control_shape[1], 90);

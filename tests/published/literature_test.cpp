@@ -98,6 +98,7 @@ TEST(Literature, random_starts_of_huang_and_wang_table_3) {
 /// The peaks grid as a cloud with four holes each over four knot spans wide.
 Samples peaks_with_holes(Parameters& parameters, bool holes) {
     const Samples whole = generate("peaks", {121, 121});
+    constexpr double half = 2.2 / 17; // of a hole: 4.4 of the 17 knot spans in all
     std::vector<double> points;
     std::vector<double> uv;
     for (Index i = 0; i < 121; ++i)
@@ -105,8 +106,8 @@ Samples peaks_with_holes(Parameters& parameters, bool holes) {
             const double u = static_cast<double>(i) / 120;
             const double v = static_cast<double>(j) / 120;
             const auto in_hole = [&](double x) {
-                return std::abs(x - 0.26) < 0.09 || std::abs(x - 0.72) < 0.09;
-            }; // 4.9 spans of 1/27
+                return std::abs(x - 0.26) < half || std::abs(x - 0.72) < half;
+            };
             if (holes && in_hole(u) && in_hole(v)) continue;
             const auto p = whole.points[i * 121 + j];
             points.insert(points.end(), p.begin(), p.end());
@@ -119,7 +120,7 @@ Samples peaks_with_holes(Parameters& parameters, bool holes) {
 TEST(Literature, rank_deficient_peaks_with_four_holes) {
     Parameters t;
     const Samples samples = peaks_with_holes(t, true);
-    const std::vector<KnotVector> axes{uniform_knots(3, 30, 0, 1), uniform_knots(3, 30, 0, 1)};
+    const std::vector<KnotVector> axes{uniform_knots(3, 20, 0, 1), uniform_knots(3, 20, 0, 1)};
     const auto system = assemble(axes, samples, t);
     EXPECT_THROW(factorize(*system), SolverError);
     const auto rms = [&](const PointSet& control) {
@@ -130,22 +131,22 @@ TEST(Literature, rank_deficient_peaks_with_four_holes) {
             .rms;
     };
     // the minimum residual, by conjugate gradients run far beyond the test's 500 steps
-    PointSet best(900, 3);
+    PointSet best(400, 3);
     ConjugateGradients long_run(*system);
     iterate(long_run, best, {.max_iterations = 5000, .relative_gradient = 1e-15});
     const double minimum = rms(best);
-    PointSet control(900, 3);
+    PointSet control(400, 3);
     ConjugateGradients cg(*system);
     iterate(cg, control, {.max_iterations = 500, .relative_gradient = 0});
     EXPECT_NEAR(rms(control) / minimum, 1, 1e-9);
     // A^T A has row sums sum_j A_ij, as B-splines sum to one: LSPIA's step from the largest
-    PointSet ones(900, 1);
+    PointSet ones(400, 1);
     ones.fill(1);
-    PointSet sums(900, 1);
+    PointSet sums(400, 1);
     system->apply(ones, sums);
     const double largest = *std::max_element(sums.values().begin(), sums.values().end());
     Lspia lspia(*system, 1 / largest);
-    control = PointSet(900, 3);
+    control = centred(PointSet(400, 3), system->centre()); // from zero
     double last = std::numeric_limits<double>::infinity();
     iterate(lspia, control, {.max_iterations = 20000, .relative_gradient = 0},
             {[&](const Iteration& now) {
@@ -160,7 +161,11 @@ TEST(Literature, rank_deficient_peaks_with_four_holes) {
              {}});
     EXPECT_LT(rms(control) / minimum, 1.01);
     Mlspia mlspia(*system);
-    control = PointSet(900, 3);
+    control = PointSet(400, 3);
+    mlspia.start(control);
+    EXPECT_TRUE(mlspia.note().starts_with("ill-determined: 1 control points without samples, which "
+                                          "stay where they start, and 3 hardly reached by any"))
+        << mlspia.note();
     iterate(mlspia, control, {.max_iterations = 20000, .relative_gradient = 0});
     EXPECT_LT(rms(control) / minimum, 1.01);
 }

@@ -43,6 +43,18 @@ KnotVector knots_from_parameters(std::span<const double> parameters, int degree,
     return knots_around(degree, interior, parameters.front(), parameters.back(), closure);
 }
 
+KnotVector averaged_knots(std::span<const double> parameters, int degree) {
+    const auto n = static_cast<Index>(parameters.size());
+    check_count(degree, n);
+    std::vector<double> interior;
+    for (Index k = 1; k < n - degree; ++k) {
+        double sum = 0;
+        for (Index i = k; i < k + degree; ++i) sum += parameters[static_cast<std::size_t>(i)];
+        interior.push_back(sum / degree);
+    }
+    return knots_around(degree, interior, parameters.front(), parameters.back());
+}
+
 KnotVector uniform_knots(int degree, Index n, double begin, double end, Closure closure) {
     check_count(degree, n);
     const Index count = interior_count(degree, n, closure);

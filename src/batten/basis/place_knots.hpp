@@ -16,6 +16,11 @@ enum class KnotPlacement {
 KnotVector knots_from_parameters(std::span<const double> parameters, int degree, Index n,
                                  Closure closure = Closure::open);
 
+/// Clamped knots for as many control points as parameters, interior knots the means of degree
+/// consecutive parameters [PieglTiller1997, eq. 9.8; LinZhang2011, eq. 38]: for interpolation and
+/// for EPIA.
+KnotVector averaged_knots(std::span<const double> parameters, int degree);
+
 /// Evenly spaced knots for n free control points over [begin, end]; clamped, or periodic when
 /// closed.
 KnotVector uniform_knots(int degree, Index n, double begin, double end,

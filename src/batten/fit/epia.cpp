@@ -27,10 +27,12 @@ struct EpiaSettings {
 
 EpiaSettings settings_from(const FitOptions& options, double data_size) {
     const Settings& s = options.method.settings;
-    EpiaSettings result{setting(s, "eta", 0.6), setting(s, "t_c", 1e-3 * data_size),
-                        static_cast<Index>(setting(s, "rounds", 10)),
-                        static_cast<Index>(setting(s, "smoothing", 4)),
-                        setting(s, "exact", 0) != 0};
+    EpiaSettings result{
+        setting(s, "eta", 0.6),
+        setting(s, "t_c",
+                options.stop.deviation > 0 ? 0.9 * options.stop.deviation : 2.5e-3 * data_size),
+        static_cast<Index>(setting(s, "rounds", 2)), static_cast<Index>(setting(s, "smoothing", 4)),
+        setting(s, "exact", 0) != 0};
     if (!(result.eta >= 0 && result.eta < 1))
         throw InvalidInput(fmt::format("epia: eta = {} is outside 0 to 1", result.eta));
     if (result.smoothing < 0 || result.rounds < 0)
@@ -246,7 +248,8 @@ class Incremental {
                                  1); // one entry per iteration
         if (report.termination == Termination::converged && options_.stop.deviation > 0)
             report.termination = Termination::tolerance_met;
-        last_error_ = insert ? std::numeric_limits<double>::infinity() : last_error_;
+        if (insert) last_error_ = std::numeric_limits<double>::infinity();
+        if (insert && left == 0) report.termination = Termination::iteration_limit;
         return insert && left > 0;
     }
 

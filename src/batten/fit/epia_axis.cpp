@@ -79,15 +79,9 @@ std::vector<SampleRange> EpiaAxis::groups() const {
 }
 
 KnotVector EpiaAxis::knots() const {
-    std::vector<double> interior;
-    const auto l = static_cast<Index>(controls_.size()) - 1;
-    for (Index k = 1; k <= l - degree_; ++k) {
-        double sum = 0;
-        for (Index i = k; i < k + degree_; ++i)
-            sum += parameter(controls_[static_cast<std::size_t>(i)]);
-        interior.push_back(sum / degree_);
-    }
-    return knots_around(degree_, interior, parameters_.front(), parameters_.back());
+    std::vector<double> own;
+    for (Index control : controls_) own.push_back(parameter(control));
+    return averaged_knots(own, degree_);
 }
 
 } // namespace batten

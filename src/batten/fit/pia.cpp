@@ -73,6 +73,14 @@ Setting square_setting(const Samples& samples, const FitOptions& options) {
         throw InvalidInput(
             "pia: samples in order or a grid are needed, not a cloud; use epia or lspia");
     setting.axes = choose_knots(setting.parameters, options.shape, plan);
+    // as many control points as samples: knots by averaging, where eq. 9.69 would leave the
+    // collocation matrix near-singular
+    for (std::size_t axis = 0; axis < setting.axes.size(); ++axis)
+        if (options.shape.knots.empty() && options.shape.placement == KnotPlacement::data &&
+            !setting.axes[axis].closed() &&
+            setting.axes[axis].free_count() ==
+                static_cast<Index>(setting.parameters.axes[axis].size()))
+            setting.axes[axis] = averaged_knots(setting.parameters.axes[axis], plan.degree[axis]);
     for (std::size_t axis = 0; axis < setting.axes.size(); ++axis) {
         const Index n = setting.axes[axis].free_count();
         const auto m = static_cast<Index>(setting.parameters.axes[axis].size());

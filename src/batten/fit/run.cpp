@@ -107,6 +107,7 @@ void run(Method& method, PointSet& control, const FitOptions& options,
     report.observed_rate = summary.observed_rate;
     report.predicted_rate = method.predicted_rate();
     report.settings = method.settings();
+    if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
     if (limit) report.inflections = inflection_count(control, axes[0].closure());
 }
 

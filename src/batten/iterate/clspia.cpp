@@ -59,7 +59,7 @@ const PointSet& Clspia::propose(const PointSet& control) {
 void Clspia::accept(const PointSet& moves) {
     ++inner_;
     const double enough =
-        settings_.inner_tolerance > 0 ? settings_.inner_tolerance : 1e-3 * largest_length(gap_);
+        settings_.inner_tolerance > 0 ? settings_.inner_tolerance : 1e-2 * largest_length(gap_);
     inner_done_ = largest_length(moves) <= enough;
 }
 

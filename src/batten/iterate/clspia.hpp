@@ -13,7 +13,7 @@ struct ClspiaSettings {
     double mu = 0; ///< outer step; 0 takes 2 / (beta_min + beta_max), beta of C (A^T A)^{-1} C^T
     double mu_1 =
         0; ///< the inner step is 1 / mu_1; 0 takes (gamma_min + gamma_max) / 2, gamma of A^T A
-    /// The inner loop ends when max |Delta| is at most this; 0: a thousandth of the largest
+    /// The inner loop ends when max |Delta| is at most this; 0: a hundredth of the largest
     /// constraint error at hand, so that it tightens as the outer loop converges.
     double inner_tolerance = 0;
     double eigenvalue_tolerance = 1e-2;

@@ -12,7 +12,9 @@ Lspia::Lspia(const NormalSystem& system, double mu, double eigenvalue_tolerance)
     : system_(system), mu_(mu), eigenvalue_tolerance_(eigenvalue_tolerance) {}
 
 void Lspia::start(const PointSet&) {
-    const ExtremeEigenvalues sigma2 = extreme_eigenvalues(system_, eigenvalue_tolerance_);
+    const WorkingEigenvalues working = working_eigenvalues(system_, eigenvalue_tolerance_);
+    const ExtremeEigenvalues& sigma2 = working.values;
+    note_ = working.note;
     if (mu_ == 0) mu_ = 2 / (sigma2.largest + sigma2.smallest);
     // the largest eigenvalue is known from below only: near the edge leave the judgement to the
     // iteration

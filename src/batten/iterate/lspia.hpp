@@ -21,12 +21,14 @@ class Lspia : public Method {
     double gradient_norm() const override { return norm_; }
     Settings settings() const override { return {{"mu", mu_}}; }
     double predicted_rate() const override { return rate_; }
+    std::string note() const override { return note_; }
 
   private:
     const NormalSystem& system_;
     double mu_;
     double eigenvalue_tolerance_;
     double rate_ = 0;
+    std::string note_;
     double norm_ = 0;
     PointSet moves_;
 };

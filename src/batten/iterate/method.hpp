@@ -37,6 +37,8 @@ class Method {
     virtual double constraint_error() const { return 0; }
     /// The weights in use, known after start().
     virtual Settings settings() const { return {}; }
+    /// What the user should know of the problem, found at start(): a sentence, or nothing.
+    virtual std::string note() const { return {}; }
     /// Predicted factor by which the error falls per iteration, 0 when the theory gives none.
     virtual double predicted_rate() const { return 0; }
 };

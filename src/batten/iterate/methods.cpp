@@ -37,8 +37,8 @@ const std::vector<MethodEntry>& table() {
          "Chang, Ma, Deng 2023",
          {{"mu", "outer step (default 2 / (beta_min + beta_max))"},
           {"mu_1", "inverse inner step (default (gamma_min + gamma_max) / 2)"},
-          {"inner_tolerance",
-           "max |Delta| that ends the inner loop (default: 1e-3 of the constraint error at hand)"},
+          {"inner_tolerance", "max |Delta| that ends the inner loop (default: a hundredth of the "
+                              "constraint error at hand)"},
           eigenvalue_setting}},
         {"pia",
          "progressive-iterative approximation: interpolates every sample",
@@ -48,8 +48,9 @@ const std::vector<MethodEntry>& table() {
          "PIA with groups of samples, knots added where the error is",
          "Lin, Zhang 2011",
          {{"eta", "validation threshold, eq. 47 (default 0.6)"},
-          {"t_c", "e_c below which a knot is inserted (default 1e-3 of the data's size)"},
-          {"rounds", "most rounds of the validation check (default 10)"},
+          {"t_c", "e_c below which a knot is inserted (default 0.9 of the stop deviation, else "
+                  "2.5e-3 of the data's size)"},
+          {"rounds", "most rounds of the validation check (default 2)"},
           {"smoothing", "widest Gaussian of the curvature, in samples (default 4)"},
           {"exact", "1: keep the refined knots instead of regenerating them by eq. 38"}}},
         {"cg",

@@ -50,7 +50,9 @@ Mlspia::Mlspia(const NormalSystem& system, MlspiaWeights weights, double eigenva
     : system_(system), weights_(weights), eigenvalue_tolerance_(eigenvalue_tolerance) {}
 
 void Mlspia::start(const PointSet& control) {
-    const ExtremeEigenvalues sigma2 = extreme_eigenvalues(system_, eigenvalue_tolerance_);
+    const WorkingEigenvalues working = working_eigenvalues(system_, eigenvalue_tolerance_);
+    const ExtremeEigenvalues& sigma2 = working.values;
+    note_ = working.note;
     complete(weights_, sigma2);
     check_region(weights_, sigma2.largest);
     // Lemma 3: 1 - omega and the roots of eq. 16; their modulus is largest at one of the extreme

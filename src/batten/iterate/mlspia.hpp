@@ -33,6 +33,7 @@ class Mlspia : public Method {
     double gradient_norm() const override { return norm_; }
     Settings settings() const override;
     double predicted_rate() const override { return rate_; }
+    std::string note() const override { return note_; }
 
     /// Delta^{k-1}: the moves that led to the present control points; empty before the first.
     const PointSet& last_moves() const { return last_; }
@@ -46,6 +47,7 @@ class Mlspia : public Method {
     MlspiaWeights weights_;
     double eigenvalue_tolerance_;
     double rate_ = 0;
+    std::string note_;
     double norm_ = 0;
     PointSet first_;
     PointSet last_;

@@ -37,14 +37,21 @@ void Pia::start(const PointSet& control) {
     keep_chosen(x);
     const PointSet zero(control.size(), control.dim());
     const PointSet base = data_.groups().means(data_.residual(zero));
-    for (int k = 0; k < steps; ++k) {
-        PointSet image = data_.groups().means(data_.residual(x));
-        add_scaled(image, -1.0, base); // - W A x
+    const auto minus_wa = [&](const PointSet& at) {
+        PointSet image = data_.groups().means(data_.residual(at));
+        add_scaled(image, -1.0, base);
         keep_chosen(image);
+        return image;
+    };
+    x = minus_wa(
+        minus_wa(x)); // moves lie in the range of W A: what it maps to zero must not be seen
+    for (int k = 0; k < steps; ++k) {
+        const PointSet image = minus_wa(x);
         PointSet next = x;
         add_scaled(next, weight_, image);
+        const double last = rate_;
         rate_ = frobenius_norm(next) / frobenius_norm(x);
-        if (!(rate_ > 0)) break;
+        if (!(rate_ > 0) || std::abs(rate_ - last) < 1e-6 * rate_) break;
         x = std::move(next);
         const double length = frobenius_norm(x);
         for (double& value : x.values()) value /= length;

@@ -41,6 +41,13 @@ void keep_inflections(const PointSet& polygon, PointSet& moves, Closure closure,
         if (i < 0 || i >= n) return std::nullopt;
         return Point{moved(i, 0), moved(i, 1)};
     };
+    const auto sign = [&](Index i) { // of the turn at i
+        const auto a = at(i - 1), b = at(i), c = at(i + 1);
+        if (!a || !b || !c) return 0;
+        const double t = turn(*a, *b, *c);
+        return t > 0 ? 1 : t < 0 ? -1 : 0;
+    };
+    const auto turns = [&](Index i) { return std::array{sign(i - 1), sign(i), sign(i + 1)}; };
     for (Index i = 0; i < n; ++i) {
         const Point p{polygon(i, 0), polygon(i, 1)};
         const Point move{moves(i, 0), moves(i, 1)};
@@ -55,10 +62,17 @@ void keep_inflections(const PointSet& polygon, PointSet& moves, Closure closure,
         hold(at(i + 1), at(i + 2));
         // rays leave from either neighbour
         if (barrier == Barrier::rays) hold(at(i + 1), at(i - 1));
-        for (std::size_t d = 0; d < 2; ++d) {
-            moves(i, static_cast<Index>(d)) *= part;
-            moved(i, static_cast<Index>(d)) = p[d] + moves(i, static_cast<Index>(d));
+        const auto before = turns(i);
+        for (Index d = 0; d < 2; ++d) {
+            moves(i, d) *= part;
+            moved(i, d) = polygon(i, d) + moves(i, d);
         }
+        if (barrier == Barrier::lines &&
+            turns(i) != before) // rounding, where a turn has all but vanished
+            for (Index d = 0; d < 2; ++d) {
+                moves(i, d) = 0;
+                moved(i, d) = polygon(i, d);
+            }
     }
 }
 

@@ -1,8 +1,11 @@
 #include <batten/solve/extreme_eigenvalues.hpp>
 
+#include <batten/solve/banded_cholesky.hpp>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <random>
 
 namespace batten {
@@ -42,7 +45,7 @@ struct Ritz {
     bool settled;
 };
 
-Ritz ritz(const Vector& alpha, const Vector& beta, double tolerance) {
+Ritz ritz(const Vector& alpha, const Vector& beta, double tolerance, SpectrumEnds ends) {
     const auto k = static_cast<Eigen::Index>(alpha.size());
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
     const Eigen::Map<const Eigen::VectorXd> diagonal(alpha.data(), k);
@@ -54,20 +57,23 @@ Ritz ritz(const Vector& alpha, const Vector& beta, double tolerance) {
         const double gap = std::abs(value[at] - value[neighbour]);
         return std::min(residual, gap > 0 ? residual * residual / gap : residual);
     };
-    const bool settled = k > 2 && error(0, 1) <= 0.1 * tolerance * std::abs(value[0]) &&
-                         error(k - 1, k - 2) <= 0.1 * tolerance * value[k - 1];
+    const bool low = ends == SpectrumEnds::largest ||
+                     (k > 2 && error(0, 1) <= 0.1 * tolerance * std::abs(value[0]));
+    const bool settled = k > 2 && low && error(k - 1, k - 2) <= 0.1 * tolerance * value[k - 1];
     return {{value[k - 1], value[0]}, settled};
 }
 
 } // namespace
 
-ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tolerance) {
+ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tolerance,
+                           SpectrumEnds ends) {
     constexpr Index most_steps = 600;
     std::vector<Vector> basis{start_vector(matrix, size)};
     Vector alpha;
     Vector beta;
     Vector w(basis[0].size());
     Ritz now{{0, 0}, false};
+    Index next_look = 5;
     for (Index k = 0; k < std::min(size, most_steps); ++k) {
         const Vector& q = basis.back();
         matrix(q, w);
@@ -77,13 +83,64 @@ ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tole
         beta.push_back(std::sqrt(dot(w, w)));
         const bool exhausted = beta.back() <= 1e-13 * std::abs(alpha[0]) || k + 1 == size;
         if (exhausted) beta.back() = 0;
-        if (exhausted || k % 5 == 4) now = ritz(alpha, beta, tolerance);
+        if (exhausted || k + 1 >= next_look) {
+            now = ritz(alpha, beta, tolerance, ends);
+            next_look = k + 1 + std::max<Index>(5, k / 4); // a look costs O(k^3)
+        }
         if (exhausted || now.settled) break;
         basis.push_back(w);
         for (double& value : basis.back()) value /= beta.back();
     }
     return now.values;
 }
+
+namespace {
+
+/// The eigenvalue beyond which `estimate` lies nothing, sharpened by Lanczos on the inverse of the
+/// matrix shifted past that end of the spectrum, the shift drawn closer: clustered ends separate.
+/// `sign` +1: the largest, -1: the smallest.
+double sharpened(const BandedMatrix& m, double estimate, int sign) {
+    constexpr double rough = 1e-3;
+    for (double margin : {4 * rough, 1e-5, 1e-7, 1e-9}) {
+        BandedMatrix shifted = m;
+        const double shift = estimate * (1 + sign * margin);
+        for (Index i = 0; i < m.size(); ++i)
+            for (int k = 0; k <= m.bandwidth(); ++k)
+                shifted.at(i, k) = sign * ((k == 0 ? shift : 0.0) - m.at(i, k));
+        const BandedCholesky factor(shifted);
+        const VectorOperator inverse = [&](const Vector& in, Vector& out) {
+            out = in;
+            factor.solve(out.data(), {});
+        };
+        estimate = shift - sign / lanczos(inverse, m.size(), rough, SpectrumEnds::largest).largest;
+    }
+    return estimate;
+}
+
+ExtremeEigenvalues banded_extremes(const BandedMatrix& m, double tolerance) {
+    const VectorOperator forward = [&](const Vector& in, Vector& out) {
+        m.apply(in.data(), out.data(), {});
+    };
+    constexpr double loose = 1e-5;
+    if (tolerance > loose) return lanczos(forward, m.size(), tolerance);
+    ExtremeEigenvalues e = lanczos(forward, m.size(), 1e-3);
+    e.largest = sharpened(m, e.largest, 1);
+    try {
+        const BandedCholesky factor(m);
+        const VectorOperator inverse = [&](const Vector& in, Vector& out) {
+            out = in;
+            factor.solve(out.data(), {});
+        };
+        e.smallest =
+            sharpened(m, 1 / lanczos(inverse, m.size(), 1e-3, SpectrumEnds::largest).largest, -1);
+    } catch (const SolverError&) { // singular: only the plain iteration, which starts in the range,
+                                   // sees past the zeros
+        e.smallest = lanczos(forward, m.size(), tolerance).smallest;
+    }
+    return e;
+}
+
+} // namespace
 
 ExtremeEigenvalues extreme_eigenvalues(const NormalSystem& system, double tolerance) {
     const auto factors = system.factors();
@@ -99,15 +156,47 @@ ExtremeEigenvalues extreme_eigenvalues(const NormalSystem& system, double tolera
     }
     ExtremeEigenvalues product{1, 1};
     for (const BandedMatrix* gram : factors) {
-        const VectorOperator one = [&](const Vector& in, Vector& out) {
-            gram->apply(in.data(), out.data(), {});
-        };
         const ExtremeEigenvalues e =
-            lanczos(one, gram->size(), tolerance / static_cast<double>(factors.size()));
+            banded_extremes(*gram, tolerance / static_cast<double>(factors.size()));
         product.largest *= e.largest;
         product.smallest *= e.smallest;
     }
     return product;
+}
+
+namespace {
+
+/// Words for control points that the samples reach hardly or not at all; nothing when there are
+/// none. The smallest eigenvalue is at most the smallest diagonal entry, which an iteration started
+/// in the range may be slow to show.
+std::string ill_determined_words(const NormalSystem& system) {
+    constexpr double hardly = 1e-6;
+    const std::vector<double> diagonal = system.diagonal();
+    const double largest = *std::max_element(diagonal.begin(), diagonal.end());
+    Index none = 0;
+    Index few = 0;
+    double smallest = largest;
+    for (double x : diagonal) {
+        none += x == 0 ? 1 : 0;
+        few += x > 0 && x < hardly * largest ? 1 : 0;
+        if (x > 0) smallest = std::min(smallest, x);
+    }
+    if (none + few == 0) return {};
+    return fmt::format("ill-determined: {} control points without samples, which stay where they "
+                       "start, and {} hardly reached by any "
+                       "(eigenvalues of A^T A down to {:.1e} of the largest or less)",
+                       none, few, smallest / largest);
+}
+
+} // namespace
+
+WorkingEigenvalues working_eigenvalues(const NormalSystem& system, double tolerance) {
+    constexpr double ill_determined = 1e-7;
+    constexpr double working = 1e-6;
+    WorkingEigenvalues result{extreme_eigenvalues(system, tolerance), ill_determined_words(system)};
+    ExtremeEigenvalues& e = result.values;
+    e.smallest = e.smallest < ill_determined * e.largest ? working * e.largest : e.smallest;
+    return result;
 }
 
 } // namespace batten

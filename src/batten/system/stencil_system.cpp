@@ -16,6 +16,13 @@ StencilSystem::StencilSystem(std::vector<KnotVector> axes, std::vector<double> c
     for (Index a = 0; a <= reach[0]; ++a)
         for (Index b = -reach[1]; b <= reach[1]; ++b)
             for (Index c = -reach[2]; c <= reach[2]; ++c) offsets_.push_back({a, b, c});
+    for (const auto& [a, b, c] : offsets_) {
+        Index flat = a;
+        if (axes_.size() > 1) flat = flat * shape_[1] + b;
+        if (axes_.size() > 2) flat = flat * shape_[2] + c;
+        flat_offsets_.push_back(flat);
+    }
+    for (const KnotVector& axis : axes_) any_closed_ = any_closed_ || axis.closed();
     stencil_.resize(static_cast<std::size_t>(size() * width_));
 }
 

@@ -32,6 +32,8 @@ class StencilSystem : public NormalSystem {
     Index same_slice_ = 1; // places whose offset along axis 0 is zero; they hold both directions
     std::vector<double> stencil_; // (N x width)
     std::vector<std::array<Index, 3>> offsets_;
+    std::vector<Index> flat_offsets_; // of the neighbours when no axis is closed
+    bool any_closed_ = false;
 };
 
 template <class Entry>
@@ -40,7 +42,8 @@ void StencilSystem::for_each_entry(Entry entry) const {
         for (Index place = 0; place < width_; ++place) {
             const double value = stencil_[static_cast<std::size_t>(i * width_ + place)];
             if (value == 0) continue;
-            const Index j = neighbour(i, place);
+            const Index j = any_closed_ ? neighbour(i, place)
+                                        : i + flat_offsets_[static_cast<std::size_t>(place)];
             entry(i, j, value);
             if (place >= same_slice_) entry(j, i, value);
         }
