@@ -13,5 +13,6 @@ void add_info(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_generate(CLI::App& app);
 void add_methods(CLI::App& app);
+void add_reproduce(CLI::App& app);
 
 } // namespace batten::command

@@ -27,6 +27,7 @@ void add_commands(CLI::App& app) {
     command::add_convert(app);
     command::add_generate(app);
     command::add_methods(app);
+    command::add_reproduce(app);
 }
 
 /// Names that could stand in place of a word that was not expected.

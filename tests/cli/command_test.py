@@ -47,11 +47,12 @@ class Command(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
-    def bad(self, status, message, *arguments, stdin=None):
+    def bad(self, status, message, *arguments, stdin=None, prefix=False):
         """One line on standard error, the status, and nothing written."""
         before = sorted(self.folder.iterdir())
         done = self.run_batten(*arguments, stdin=stdin)
-        self.assertEqual(done.stderr, "batten: " + message + "\n")
+        self.assertEqual(done.stderr[:len(message) + 8] if prefix else done.stderr, "batten: " + message + ("" if prefix else "\n"))
+        self.assertEqual(len(done.stderr.splitlines()), 1)
         self.assertEqual(done.returncode, status)
         self.assertEqual(done.stdout, "")
         self.assertEqual(sorted(self.folder.iterdir()), before)
@@ -202,6 +203,31 @@ class Refusals(Command):
         self.bad(2, "unknown data set 'rsoe'; did you mean 'rose'?", "generate", "rsoe")
         done = self.run_batten("fit")
         self.assertEqual((done.returncode, done.stderr), (2, "batten: POINTS is required\n"))
+
+
+    def test_methods_that_need_more(self):
+        self.bad(2, "epia: state where to stop: a deviation (--stop-deviation) or a number of control points", "fit", "r.csv", "--method", "epia")
+        self.bad(2, "axis 0: pia needs as many control points as samples, got 8 and 30", "fit", "r.csv", "--method", "pia", "-n", 8)
+        self.bad(2, "interpolated sample 30: the samples are 0 to 29", "fit", "r.csv", "-n", 8, "--interpolate", "0,30")
+        self.bad(2, "interpolated sample 4 is given twice", "fit", "r.csv", "-n", 8, "--interpolate", "4,4")
+        self.bad(2, "method lspia cannot interpolate samples exactly; use direct or clspia", "fit", "r.csv", "-n", 8, "--method", "lspia", "--interpolate", "ends")
+        self.bad(2, "preserve: shape is kept for curves in the plane, not for a surface or volume in dimension 3",
+                 "fit", "p.csv", "--grid", "9x9", "-n", "5x5", "--preserve", "convexity")
+        self.bad(2, "clspia: mu_1 = 0.1 is outside the convergence region mu_1 > ", "fit", "r.csv", "-n", 8, "--method", "clspia",
+                 "--interpolate", "ends", "--set", "mu_1=0.1", prefix=True)
+        self.bad(2, "unknown paper 'mlpia'; did you mean 'mlspia'?", "reproduce", "mlpia")
+
+    def test_exact_samples(self):
+        self.good("fit", "r.csv", "-n", 10, "--interpolate", "ends", "-o", "e.json", "--summary", "e_s.json")
+        ends = np.loadtxt(self.folder / "r.csv", delimiter=",")[[0, -1]]
+        np.testing.assert_allclose(evaluate(self.read_json("e.json"), np.array([0.0, 1.0])), ends, atol=1e-13)
+        self.assertEqual(self.read_json("e_s.json")["interpolated"], 2)
+
+    def test_reproduce(self):
+        table = self.good("reproduce", "mlspia", "--folder", "papers")
+        self.assertRegex(table, r"Example 3, 334 control points, I +696 +696 +1\.0000")
+        self.assertTrue((self.folder / "papers" / "mlspia_example3_comb.svg").exists())
+        self.assertEqual(len((self.folder / "papers" / "mlspia_example3_history.csv").read_text().splitlines()), 1 + 48)
 
 
 class Manners(Command):

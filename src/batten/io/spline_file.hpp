@@ -18,6 +18,8 @@ struct Scene {
     const Spline& spline;
     const Samples* samples = nullptr;
     std::string title{};
+    /// Draw the curvature comb: normals as long as the curvature, where a picture can.
+    bool curvature_comb = false;
 };
 
 /// A file format of splines, found by its extension (with the dot, lower case).

@@ -101,6 +101,37 @@ std::string dots(const Points& points, const Frame& frame, double radius) {
                        2 * radius);
 }
 
+/// Normals of the curve as long as its curvature, the longest an eighth of the picture, and the
+/// line along their tips.
+std::string comb(const Spline& curve, const Frame& frame) {
+    constexpr int per_span = 10;
+    const KnotVector& k = curve.axis(0);
+    const std::vector<double> breaks = k.breakpoints();
+    std::vector<std::array<double, 4>> teeth; // foot, curvature times normal
+    double longest = 1e-300;
+    for (std::size_t b = 0; b + 1 < breaks.size(); ++b)
+        for (int s = 0; s < per_span; ++s) {
+            const std::array t{breaks[b] + (breaks[b + 1] - breaks[b]) * (s + 0.5) / per_span};
+            const auto p = curve(t);
+            const auto d1 = curve(t, std::array{1});
+            const auto d2 = curve(t, std::array{2});
+            const double speed = std::hypot(d1[0], d1[1]);
+            if (!(speed > 0)) continue;
+            const double curvature = (d1[0] * d2[1] - d1[1] * d2[0]) / (speed * speed * speed);
+            longest = std::max(longest, std::abs(curvature));
+            teeth.push_back({p[0], p[1], curvature * d1[1] / speed, -curvature * d1[0] / speed});
+        }
+    const double scale = picture_size / 8 / frame.scale / longest;
+    std::string path;
+    std::string tips;
+    for (const auto& [x, y, nx, ny] : teeth) {
+        const std::string tip = frame.at(x + scale * nx, y + scale * ny);
+        path += fmt::format("M {} L {} ", frame.at(x, y), tip);
+        tips += (tips.empty() ? "M " : " L ") + tip;
+    }
+    return fmt::format("  <path class=\"comb\" d=\"{}{}\"/>\n", path, tips);
+}
+
 PointSet box_around(const Scene& scene) {
     PointSet box = bounding_box(scene.spline.control_points());
     if (scene.samples == nullptr || scene.samples->dim() != 2) return box;
@@ -129,7 +160,8 @@ std::string svg_picture(const Scene& scene) {
         "    .samples { stroke: #e07b39; stroke-linecap: round; fill: none; }\n"
         "    .curve { stroke: #1f4e79; stroke-width: 1.8; fill: none; stroke-linejoin: round; }\n"
         "    .polygon { stroke: #9aa5b1; stroke-width: 0.8; fill: none; stroke-dasharray: 4 3; }\n"
-        "    .control { fill: #ffffff; stroke: #5c6b7a; stroke-width: 1; }\n"
+        "    .comb { stroke: #5a9367; stroke-width: 0.6; fill: none; }\n"
+           "    .control { fill: #ffffff; stroke: #5c6b7a; stroke-width: 1; }\n"
         "  </style>\n"
         "  <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
     if (!scene.title.empty()) svg += fmt::format("  <title>{}</title>\n", escaped(scene.title));
@@ -142,6 +174,7 @@ std::string svg_picture(const Scene& scene) {
         const double crowd = static_cast<double>(scene.samples->size());
         svg += dots(scene.samples->points, frame, std::clamp(40 / std::sqrt(crowd), 0.8, 2.4));
     }
+    if (scene.curvature_comb) svg += comb(curve, frame);
     svg += fmt::format("  <path class=\"curve\" d=\"{}{}\"/>\n", curve_path(curve, frame),
                        curve.axis(0).closed() ? " Z" : "");
     const double mark = control.size() > 150 ? 1.6 : 2.6;

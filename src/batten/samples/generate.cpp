@@ -64,6 +64,52 @@ Samples naca0012(std::vector<Index> size) {
     return naca4("0012", size[0]);
 }
 
+/// The outline of a letter G of unit height: two arcs, straight strokes and sharp corners, closed.
+Samples letter(std::vector<Index> size) {
+    struct Piece {
+        double x0, y0, x1,
+            y1; // a stroke, or with radius > 0 an arc around (x0, y0) from angle x1 to y1
+        double radius;
+        double length() const {
+            return radius > 0 ? radius * std::abs(y1 - x1) : std::hypot(x1 - x0, y1 - y0);
+        }
+    };
+    const double a = pi / 5;
+    const double outer = 0.5;
+    const double inner = 0.36;
+    const double cx = 0.5;
+    const auto on = [&](double r, double angle) {
+        return std::array{cx + r * std::cos(angle), cx + r * std::sin(angle)};
+    };
+    const auto start = on(inner, a), tip = on(outer, a);
+    const std::vector<Piece> pieces = {
+        {start[0], start[1], tip[0], tip[1], 0},
+        {cx, cx, a, 2 * pi, outer},
+        {1, 0.5, 0.6, 0.5, 0},
+        {0.6, 0.5, 0.6, 0.38, 0},
+        {0.6, 0.38, cx + std::sqrt(inner * inner - 0.12 * 0.12), 0.38, 0},
+        {cx, cx, 2 * pi - std::asin(0.12 / inner), a, inner},
+    };
+    double total = 0;
+    for (const Piece& piece : pieces) total += piece.length();
+    PointSet points(size[0], 2);
+    std::size_t at = 0;
+    double before = 0;
+    for (Index i = 0; i < size[0]; ++i) {
+        const double s = evenly(i, size[0], 0, total);
+        while (at + 1 < pieces.size() && s > before + pieces[at].length())
+            before += pieces[at++].length();
+        const Piece& piece = pieces[at];
+        const double part = std::min(1.0, (s - before) / piece.length());
+        const double first = piece.x1 + part * (piece.y1 - piece.x1); // an arc's angle
+        points(i, 0) = piece.radius > 0 ? piece.x0 + piece.radius * std::cos(first)
+                                        : piece.x0 + part * (piece.x1 - piece.x0);
+        points(i, 1) = piece.radius > 0 ? piece.y0 + piece.radius * std::sin(first)
+                                        : piece.y0 + part * (piece.y1 - piece.y0);
+    }
+    return curve(std::move(points));
+}
+
 double peaks_height(double x, double y) {
     return 3 * (1 - x) * (1 - x) * std::exp(-x * x - (y + 1) * (y + 1)) -
            10 * (x / 5 - x * x * x - std::pow(y, 5)) * std::exp(-x * x - y * y) -
@@ -127,6 +173,7 @@ const std::vector<Generator>& table() {
          {201}},
         {"rose", "r = sin(theta/4), theta on [0, 8 pi] (planar curve)", rose, {501}},
         {"circle", "unit circle, first point repeated at the end (planar curve)", circle, {101}},
+        {"letter", "outline of a letter G with sharp corners (planar curve)", letter, {269}},
         {"helix", "(5 cos t, 5 sin t, t), t on [0, 6 pi] (space curve)", helix, {400}},
         {"peaks", "the peaks function over [-3,3] x [-4,4] (grid of 2 axes)", peaks, {121, 121}},
         {"torus",
