@@ -91,7 +91,8 @@ std::vector<Index> dominant_indices(const std::vector<double>& k) {
     constexpr double rounding = 1e-6; // on a circle all curvatures are equal but for it
     std::vector<Index> result{0};
     for (std::size_t j = 1; j + 1 < k.size(); ++j) // eq. 31 prints k < k < k for a local maximum
-        if (k[j - 1] * (1 + rounding) < k[j] && k[j] >= k[j + 1]) result.push_back(static_cast<Index>(j));
+        if (k[j - 1] * (1 + rounding) < k[j] && k[j] >= k[j + 1])
+            result.push_back(static_cast<Index>(j));
     result.push_back(static_cast<Index>(k.size()) - 1);
     return result;
 }

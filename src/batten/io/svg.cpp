@@ -161,7 +161,7 @@ std::string svg_picture(const Scene& scene) {
         "    .curve { stroke: #1f4e79; stroke-width: 1.8; fill: none; stroke-linejoin: round; }\n"
         "    .polygon { stroke: #9aa5b1; stroke-width: 0.8; fill: none; stroke-dasharray: 4 3; }\n"
         "    .comb { stroke: #5a9367; stroke-width: 0.6; fill: none; }\n"
-           "    .control { fill: #ffffff; stroke: #5c6b7a; stroke-width: 1; }\n"
+        "    .control { fill: #ffffff; stroke: #5c6b7a; stroke-width: 1; }\n"
         "  </style>\n"
         "  <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
     if (!scene.title.empty()) svg += fmt::format("  <title>{}</title>\n", escaped(scene.title));

@@ -5,17 +5,36 @@
 
 namespace batten {
 
-/// A normal system that is the Kronecker product of one banded matrix per axis: sequences (one
-/// factor, with weights) and full grids of 2 or 3 axes (without).
-class FactoredSystem : public NormalSystem {
+/// The normal system of a sequence: one banded matrix, built in one pass from the moments of each
+/// knot span.
+class BandedSystem : public NormalSystem {
   public:
-    /// `parameters` of the whole data; samples follow through add().
-    FactoredSystem(std::vector<KnotVector> axes, std::vector<double> centre,
-                   const Parameters& parameters);
+    BandedSystem(const KnotVector& knots, std::vector<double> centre);
 
-    /// Adds consecutive slices along axis 0, the first having index `first`: single samples of a
-    /// sequence, rows or layers of a grid. `weights`: one per sample or none.
-    void add(Index first, const Points& slices, std::span<const double> weights);
+    /// Adds samples at ascending parameters, with one weight each or none. Chunks may follow each
+    /// other in any number; for equal bits the same data must come in the same chunks. Throws
+    /// InvalidInput when a parameter is outside an open domain.
+    void add(std::span<const double> parameters, const Points& points,
+             std::span<const double> weights);
+
+    void apply(const PointSet& x, PointSet& y) const override;
+    std::vector<double> diagonal() const override { return gram_.diagonal(); }
+    std::vector<const BandedMatrix*> factors() const override { return {&gram_}; }
+
+  private:
+    BandedMatrix gram_;
+};
+
+/// The normal system of a full unweighted grid of 2 or 3 axes: the Kronecker product of one banded
+/// matrix per axis.
+class KroneckerSystem : public NormalSystem {
+  public:
+    /// `parameters` of the whole grid; samples follow through add().
+    KroneckerSystem(std::vector<KnotVector> axes, std::vector<double> centre,
+                    const Parameters& parameters);
+
+    /// Adds consecutive rows or layers along axis 0, the first having index `first`.
+    void add(Index first, const Points& slices);
     /// Completes the right-hand side once all slices are in.
     void finish();
 
@@ -26,7 +45,8 @@ class FactoredSystem : public NormalSystem {
   private:
     std::vector<Collocation> collocations_;
     std::vector<BandedMatrix> grams_;
-    Index slice_values_;             // doubles in one slice along axis 0
+    Index slice_values_; // doubles in one slice along axis 0
+    std::vector<double> slice_centre_;
     std::vector<double> slices_sum_; // (n_0 x slice_values): A_0^T Q
 };
 

@@ -78,8 +78,13 @@ std::unique_ptr<NormalSystem> assemble(const std::vector<KnotVector>& axes, cons
                     samples.weights);
         return system;
     }
-    auto system = std::make_unique<FactoredSystem>(axes, centre, parameters);
-    system->add(0, samples.points, samples.weights);
+    if (axes.size() == 1) {
+        auto system = std::make_unique<BandedSystem>(axes[0], centre);
+        system->add(parameters.axes[0], samples.points, samples.weights);
+        return system;
+    }
+    auto system = std::make_unique<KroneckerSystem>(axes, centre, parameters);
+    system->add(0, samples.points);
     system->finish();
     return system;
 }

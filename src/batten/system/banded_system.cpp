@@ -1,0 +1,132 @@
+#include <batten/system/factored_system.hpp>
+
+#include <batten/system/chebyshev_maps.hpp>
+#include <batten/system/moments.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <fmt/format.h>
+
+namespace batten {
+
+namespace {
+
+constexpr Index chunk_samples = 1 << 14;
+constexpr Index wave_chunks = 16; // chunks under way at once: bounds the memory of their results
+
+/// What the samples of one chunk add to the spans that they touch.
+struct ChunkSums {
+    std::vector<Index> spans;
+    std::vector<double> grams; ///< per span the pairs (i, j), i <= j
+    std::vector<double> rhs;   ///< per span (p + 1) x dim
+    double energy = 0;
+};
+
+/// The samples of a chunk, span by span.
+class ChunkPass {
+  public:
+    ChunkPass(const KnotVector& knots, const std::vector<double>& centre)
+        : knots_(knots), centre_(centre), dim_(static_cast<Index>(centre.size())) {}
+
+    ChunkSums operator()(const double* t, const double* q, const double* w, Index count) const {
+        ChunkSums sums;
+        Lanes energy;
+        for (Index i = 0; i < count;) {
+            const double inside = knots_.wrapped(t[i]);
+            if (!(inside >= knots_.begin() && inside <= knots_.end()))
+                throw InvalidInput(fmt::format("parameter {} is outside the knots' domain [{}, {}]",
+                                               t[i], knots_.begin(), knots_.end()));
+            const double shift = t[i] - inside; // whole periods of a closed axis
+            const Index span = knots_.span(inside);
+            const bool last = knots_[span + 1] == knots_.end() && !knots_.closed();
+            const double limit = knots_[span + 1] + shift;
+            Index end = std::lower_bound(t + i, t + count, limit) - t;
+            if (last) end = std::upper_bound(t + i, t + count, limit) - t;
+            end = std::max(end, i + 1);
+            add_span(span, shift,
+                     {t + i, q + i * dim_, w == nullptr ? nullptr : w + i, end - i, dim_}, energy,
+                     sums);
+            i = end;
+        }
+        sums.energy = energy.sum();
+        return sums;
+    }
+
+  private:
+    void add_span(Index span, double shift, const SpanSamples& samples, Lanes& energy,
+                  ChunkSums& sums) const {
+        const int p = knots_.degree();
+        const ChebyshevMaps maps(knots_, span);
+        std::array<Lanes, 2 * max_degree + 1> moments{};
+        std::array<Lanes, (max_degree + 1) * 16> values;
+        std::fill_n(values.begin(), (p + 1) * dim_, Lanes{});
+        add_span_moments(samples, p, maps.middle() + shift, maps.scale(), centre_.data(),
+                         moments.data(), values.data(), &energy);
+        std::array<double, 2 * max_degree + 1> moment{};
+        for (int k = 0; k <= 2 * p; ++k)
+            moment[static_cast<std::size_t>(k)] = moments[static_cast<std::size_t>(k)].sum();
+        sums.spans.push_back(span);
+        for (int i = 0; i <= p; ++i)
+            for (int j = i; j <= p; ++j) sums.grams.push_back(maps.pair(i, j, moment.data()));
+        const std::size_t at = sums.rhs.size();
+        sums.rhs.resize(at + static_cast<std::size_t>((p + 1) * dim_));
+        for (int k = 0; k <= p; ++k)
+            for (Index d = 0; d < dim_; ++d) {
+                const double value = values[static_cast<std::size_t>(k * dim_ + d)].sum();
+                for (int i = 0; i <= p; ++i)
+                    sums.rhs[at + static_cast<std::size_t>(i * dim_ + d)] +=
+                        maps.coefficients(i)[k] * value;
+            }
+    }
+
+    const KnotVector& knots_;
+    const std::vector<double>& centre_;
+    Index dim_;
+};
+
+} // namespace
+
+BandedSystem::BandedSystem(const KnotVector& knots, std::vector<double> centre)
+    : NormalSystem({knots}, std::move(centre)),
+      gram_(knots.free_count(), knots.degree(), knots.closure()) {}
+
+void BandedSystem::add(std::span<const double> parameters, const Points& points,
+                       std::span<const double> weights) {
+    assert(static_cast<Index>(parameters.size()) == points.size());
+    const KnotVector& knots = axes_[0];
+    const int p = knots.degree();
+    const Index n = knots.free_count();
+    const ChunkPass pass(knots, centre_);
+    const Index chunks = (points.size() + chunk_samples - 1) / chunk_samples;
+    std::vector<ChunkSums> wave;
+    for (Index first = 0; first < chunks; first += wave_chunks) {
+        const Index count = std::min(wave_chunks, chunks - first);
+        wave.assign(static_cast<std::size_t>(count), {});
+        for_each_chunk(count, [&](Index k) {
+            const Index begin = (first + k) * chunk_samples;
+            const Index size = std::min(chunk_samples, points.size() - begin);
+            wave[static_cast<std::size_t>(k)] =
+                pass(parameters.data() + begin, points.data() + begin * dim(),
+                     weights.empty() ? nullptr : weights.data() + begin, size);
+        });
+        for (const ChunkSums& sums : wave) { // in order: the same bits for any number of threads
+            std::size_t pair = 0;
+            std::size_t value = 0;
+            for (Index span : sums.spans) {
+                for (int i = 0; i <= p; ++i) {
+                    const Index row = (span - p + i) % n;
+                    for (int j = i; j <= p; ++j) gram_.at(row, j - i) += sums.grams[pair++];
+                    for (Index d = 0; d < dim(); ++d) rhs_(row, d) += sums.rhs[value++];
+                }
+            }
+            data_energy_ += sums.energy;
+        }
+    }
+    sample_count_ += points.size();
+}
+
+void BandedSystem::apply(const PointSet& x, PointSet& y) const {
+    gram_.apply(x.data(), y.data(), {1, x.dim()});
+}
+
+} // namespace batten
