@@ -28,7 +28,8 @@ std::string undetermined_axes(const std::vector<KnotVector>& axes, const Paramet
 }
 
 /// The method to run, and why when the caller left it open.
-std::string choose_method(const FitOptions& options, const std::string& gap, FitReport& report) {
+std::string choose_method(const FitOptions& options, const std::string& gap,
+                          const Parameters& parameters, FitReport& report) {
     const std::string& name = options.method.name;
     const bool exact = !options.hold.interpolate.empty();
     const bool shape = options.hold.preserve != Preserve::nothing;
@@ -47,6 +48,11 @@ std::string choose_method(const FitOptions& options, const std::string& gap, Fit
     if (shape) {
         report.method_reason = "the shape is kept step by step";
         return exact ? "clspia" : "mlspia";
+    }
+    if (parameters.is_scattered() && !exact) {
+        report.method_reason = "a cloud: conjugate gradients, preconditioned axis by axis, cost "
+                               "less than a sparse factorisation";
+        return "cg";
     }
     if (gap.empty()) {
         report.method_reason =
@@ -85,7 +91,8 @@ FitResult fit_fixed(const Samples& samples, const FitOptions& options) {
     report.seconds.emplace_back("parametrize", watch.lap());
     stop_if_cancelled(options);
     const std::vector<KnotVector> axes = choose_knots(result.parameters, options.shape, plan);
-    report.method = choose_method(options, undetermined_axes(axes, result.parameters), report);
+    report.method = choose_method(options, undetermined_axes(axes, result.parameters),
+                                  result.parameters, report);
     const Constraints constraints =
         interpolate_samples(axes, samples, result.parameters, options.hold.interpolate);
     report.seconds.emplace_back("knots", watch.lap());

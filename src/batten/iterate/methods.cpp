@@ -54,9 +54,10 @@ const std::vector<MethodEntry>& table() {
           {"smoothing", "widest Gaussian of the curvature, in samples (default 4)"},
           {"exact", "1: keep the refined knots instead of regenerating them by eq. 38"}}},
         {"cg",
-         "conjugate gradients, diagonally preconditioned",
+         "conjugate gradients, preconditioned axis by axis on clouds, by the diagonal elsewhere",
          "Hestenes, Stiefel 1952",
-         {{"plain", "1: without the preconditioner"}}},
+         {{"plain", "1: without the preconditioner"},
+          {"diagonal", "1: by the diagonal on clouds, too"}}},
         {"chebyshev", "LSPIA with Chebyshev steps", "Golub, Varga 1961", {eigenvalue_setting}},
         {"nesterov", "LSPIA with Nesterov's momentum", "Nesterov 2004", {eigenvalue_setting}},
         {"barzilai-borwein",
@@ -113,10 +114,13 @@ std::unique_ptr<Method> make_method(std::string_view name, const NormalSystem& s
                                     setting(settings, "nu", 0)};
         return std::make_unique<Mlspia>(system, weights, accuracy);
     }
-    if (name == "cg")
-        return std::make_unique<ConjugateGradients>(system, setting(settings, "plain", 0) != 0
-                                                                ? Preconditioner::none
-                                                                : Preconditioner::diagonal);
+    if (name == "cg") {
+        const bool plain = setting(settings, "plain", 0) != 0;
+        const bool diagonal = setting(settings, "diagonal", 0) != 0;
+        return std::make_unique<ConjugateGradients>(system, plain      ? Preconditioner::none
+                                                            : diagonal ? Preconditioner::diagonal
+                                                                       : Preconditioner::axes);
+    }
     if (name == "chebyshev") return std::make_unique<Chebyshev>(system, accuracy);
     if (name == "nesterov") return std::make_unique<Nesterov>(system, accuracy);
     if (name == "barzilai-borwein")

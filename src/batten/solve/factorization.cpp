@@ -70,4 +70,25 @@ std::unique_ptr<Factorization> factorize(const NormalSystem& system) {
     return std::make_unique<SparseFactorization>(dynamic_cast<const StencilSystem&>(system));
 }
 
+std::unique_ptr<Factorization> factorize_axes(const NormalSystem& system) {
+    const auto* scattered = dynamic_cast<const StencilSystem*>(&system);
+    if (scattered == nullptr) return nullptr;
+    std::vector<BandedMatrix> grams = scattered->axis_grams();
+    // the product must come near A^T D A in scale, too: all but one axis are divided by the total
+    // weight
+    std::vector<const BandedMatrix*> factors;
+    for (std::size_t k = 0; k < grams.size(); ++k) {
+        if (k > 0)
+            for (Index i = 0; i < grams[k].size(); ++i)
+                for (int b = 0; b <= grams[k].bandwidth(); ++b)
+                    grams[k].at(i, b) /= scattered->total_weight();
+        factors.push_back(&grams[k]);
+    }
+    try {
+        return std::make_unique<AxisFactorization>(factors);
+    } catch (const SolverError&) {
+        return nullptr;
+    }
+}
+
 } // namespace batten

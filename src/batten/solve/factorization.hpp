@@ -21,4 +21,9 @@ class Factorization {
 /// samples. Throws SolverError when the samples do not determine every control point.
 std::unique_ptr<Factorization> factorize(const NormalSystem& system);
 
+/// Of a system of scattered samples: the Kronecker product of the axes' own matrices over the total
+/// weight, axis by axis, as an approximation. Null for other systems, or when an axis alone is
+/// singular.
+std::unique_ptr<Factorization> factorize_axes(const NormalSystem& system);
+
 } // namespace batten

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <type_traits>
 
 namespace batten {
 
@@ -35,8 +36,22 @@ PointSet Collocation::apply_transposed(const PointSet& y) const {
 
 namespace {
 
-void add_row(double* y, double factor, const double* x, Index count) {
-    for (Index k = 0; k < count; ++k) y[k] += factor * x[k];
+/// y += factor * x over a run that is often as short as a point: then its length is known to the
+/// compiler.
+inline void add_row(double* y, double factor, const double* x, Index count) {
+    const auto add = [&](auto length) {
+        for (Index k = 0; k < length; ++k) y[k] += factor * x[k];
+    };
+    switch (count) {
+    case 1:
+        return add(std::integral_constant<Index, 1>());
+    case 2:
+        return add(std::integral_constant<Index, 2>());
+    case 3:
+        return add(std::integral_constant<Index, 3>());
+    default:
+        return add(count);
+    }
 }
 
 } // namespace
@@ -53,15 +68,49 @@ std::vector<double> Collocation::apply_along(const std::vector<double>& values, 
     return result;
 }
 
+namespace {
+
+/// One strand of apply_transposed_along whose points are `dim` long: the sums of rows that share
+/// their columns stay in registers.
+template <int dim>
+void transpose_strand(const Collocation& a, const double* in, double* out) {
+    const int terms = a.degree() + 1;
+    for (Index j = 0; j < a.rows();) {
+        const Index column = a.column(j, 0);
+        double sums[max_degree + 1][dim] = {};
+        for (; j < a.rows() && a.column(j, 0) == column; ++j)
+            for (int r = 0; r < terms; ++r)
+                for (int d = 0; d < dim; ++d) sums[r][d] += a.value(j, r) * in[j * dim + d];
+        for (int r = 0; r < terms; ++r)
+            for (int d = 0; d < dim; ++d) out[a.column(j - 1, r) * dim + d] += sums[r][d];
+    }
+}
+
+void transpose_long_strand(const Collocation& a, const double* in, double* out, Index inner) {
+    for (Index j = 0; j < a.rows(); ++j)
+        for (int r = 0; r <= a.degree(); ++r)
+            add_row(out + a.column(j, r) * inner, a.value(j, r), in + j * inner, inner);
+}
+
+} // namespace
+
 std::vector<double> Collocation::apply_transposed_along(const std::vector<double>& values,
                                                         Index inner) const {
     const Index outer = static_cast<Index>(values.size()) / (rows() * inner);
     std::vector<double> result(static_cast<std::size_t>(outer * columns_ * inner));
     for_each_chunk(outer, [&](Index o) {
-        for (Index j = 0; j < rows(); ++j)
-            for (int r = 0; r <= degree_; ++r)
-                add_row(result.data() + (o * columns_ + column(j, r)) * inner, value(j, r),
-                        values.data() + (o * rows() + j) * inner, inner);
+        const double* in = values.data() + o * rows() * inner;
+        double* out = result.data() + o * columns_ * inner;
+        switch (inner) {
+        case 1:
+            return transpose_strand<1>(*this, in, out);
+        case 2:
+            return transpose_strand<2>(*this, in, out);
+        case 3:
+            return transpose_strand<3>(*this, in, out);
+        default:
+            return transpose_long_strand(*this, in, out, inner);
+        }
     });
     return result;
 }

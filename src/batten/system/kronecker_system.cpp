@@ -9,7 +9,7 @@ namespace batten {
 
 namespace {
 
-constexpr Index tile = 256; // doubles of a slice that one task takes through all rows
+constexpr Index tile = 1024; // doubles of a slice that one task takes through all rows
 
 void add_gram_row(BandedMatrix& gram, const Collocation& a, Index j) {
     for (int r = 0; r <= a.degree(); ++r)
@@ -17,22 +17,48 @@ void add_gram_row(BandedMatrix& gram, const Collocation& a, Index j) {
             gram.at(a.column(j, r), s - r) += a.value(j, r) * a.value(j, s);
 }
 
+typedef double Vector __attribute__((
+    vector_size(64))); // NOLINT(modernize-use-using): GCC wants the attribute on a typedef
+
+inline __attribute__((always_inline)) Vector load(const double* x) {
+    Vector v;
+    __builtin_memcpy(&v, x, sizeof v);
+    return v;
+}
+
+template <int known_terms>
+inline __attribute__((always_inline)) void
+add_row(const double* row, const double* next, const double* centre, const double* weight,
+        int terms_, Index count, double* sums, Lanes* energy) {
+    const int terms = known_terms > 0 ? known_terms : terms_;
+    Vector e = load(energy->value.data());
+    Index k = 0;
+    for (; k + lanes <= count; k += lanes) {
+        __builtin_prefetch(
+            next + k); // rows lie pages apart: the hardware does not see the next one coming
+        const Vector x = load(row + k) - load(centre + k);
+        e += x * x;
+        for (int r = 0; r < terms; ++r) {
+            const Vector sum = load(sums + r * tile + k) + weight[r] * x;
+            __builtin_memcpy(sums + r * tile + k, &sum, sizeof sum);
+        }
+    }
+    __builtin_memcpy(energy->value.data(), &e, sizeof e);
+    for (; k < count; ++k) {
+        const double x = row[k] - centre[k];
+        energy->value[0] += x * x;
+        for (int r = 0; r < terms; ++r) sums[r * tile + k] += weight[r] * x;
+    }
+}
+
 /// sums[r][k] += weight[r] * (row[k] - centre[k]) and the squares' sum, over one tile of one row.
 BATTEN_VECTOR_CLONES
-void add_tile(const double* row, const double* centre, const double* weight, int terms, Index count,
-              double* sums, Lanes* energy) {
-    double shifted[tile];
-    for (Index k = 0; k < count; ++k) shifted[k] = row[k] - centre[k];
-    for (int r = 0; r < terms; ++r) {
-        double* sum = sums + r * tile;
-        const double w = weight[r];
-        for (Index k = 0; k < count; ++k) sum[k] += w * shifted[k];
-    }
-    Index k = 0;
-    for (; k + lanes <= count; k += lanes)
-        for (int lane = 0; lane < lanes; ++lane)
-            energy->value[static_cast<std::size_t>(lane)] += shifted[k + lane] * shifted[k + lane];
-    for (; k < count; ++k) energy->value[0] += shifted[k] * shifted[k];
+void add_tile(const double* row, const double* next, const double* centre, const double* weight,
+              int terms, Index count, double* sums, Lanes* energy) {
+    if (terms == 4)
+        add_row<4>(row, next, centre, weight, terms, count, sums, energy);
+    else
+        add_row<0>(row, next, centre, weight, terms, count, sums, energy);
 }
 
 } // namespace
@@ -68,8 +94,9 @@ void KroneckerSystem::add(Index first, const Points& slices) {
             for (; j < rows && a.column(first + j, 0) == column; ++j) {
                 double weight[max_degree + 1];
                 for (int r = 0; r <= a.degree(); ++r) weight[r] = a.value(first + j, r);
-                add_tile(slices.data() + j * slice_values_ + begin, slice_centre_.data() + begin,
-                         weight, a.degree() + 1, count, sums,
+                const double* row = slices.data() + j * slice_values_ + begin;
+                add_tile(row, j + 1 < rows ? row + slice_values_ : row,
+                         slice_centre_.data() + begin, weight, a.degree() + 1, count, sums,
                          &energies[static_cast<std::size_t>(t)]);
             }
             for (int r = 0; r <= a.degree(); ++r) {

@@ -1,5 +1,7 @@
 #include <batten/system/stencil_system.hpp>
 
+#include <batten/core/vector_clones.hpp>
+
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -24,6 +26,8 @@ StencilSystem::StencilSystem(std::vector<KnotVector> axes, std::vector<double> c
     }
     for (const KnotVector& axis : axes_) any_closed_ = any_closed_ || axis.closed();
     stencil_.resize(static_cast<std::size_t>(size() * width_));
+    for (const KnotVector& axis : axes_)
+        axis_grams_.emplace_back(axis.free_count(), axis.degree(), axis.closure());
 }
 
 Index StencilSystem::neighbour(Index control, Index place) const {
@@ -43,10 +47,11 @@ Index StencilSystem::neighbour(Index control, Index place) const {
 
 void StencilSystem::add(const Points& points, const Points& parameters,
                         std::span<const double> weights) {
+    sample_count_ += points.size();
+    if (axes_.size() == 2) return add_cells(points, parameters, weights);
     for (Index i = 0; i < points.size(); ++i)
         add_sample(points[i], parameters[i].data(),
                    weights.empty() ? 1.0 : weights[static_cast<std::size_t>(i)]);
-    sample_count_ += points.size();
 }
 
 namespace {
@@ -95,28 +100,77 @@ void StencilSystem::add_sample(std::span<const double> point, const double* para
     const Index second = axes_.size() > 1 ? axes_[1].degree() : 0;
     const Index third = axes_.size() > 2 ? axes_[2].degree() : 0;
     for (const Local& a : local) {
-        double* row = stencil_.data() + a.control * width_;
         for (const Local& b : local) {
             const Index step = b.place[0] - a.place[0];
             if (step < 0) continue;
             const Index place =
                 (step * (2 * second + 1) + b.place[1] - a.place[1] + second) * (2 * third + 1) +
                 b.place[2] - a.place[2] + third;
-            row[place] += weight * a.value * b.value;
+            at(place, a.control) += weight * a.value * b.value;
         }
         for (Index d = 0; d < dim(); ++d)
             rhs_(a.control, d) +=
                 weight * a.value *
                 (point[static_cast<std::size_t>(d)] - centre_[static_cast<std::size_t>(d)]);
     }
+    for (std::size_t k = 0; k < axes_.size(); ++k) {
+        const KnotVector& knots = axes_[k];
+        const double t = knots.wrapped(parameter[k]);
+        const Index span = knots.span(t);
+        const BasisValues b = basis_values(knots, span, t);
+        for (int i = 0; i <= knots.degree(); ++i)
+            for (int j = i; j <= knots.degree(); ++j)
+                axis_grams_[k].at((span - knots.degree() + i) % knots.free_count(), j - i) +=
+                    weight * b[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(j)];
+    }
+    total_weight_ += weight;
     for (std::size_t d = 0; d < point.size(); ++d)
         data_energy_ += weight * (point[d] - centre_[d]) * (point[d] - centre_[d]);
 }
 
+namespace {
+
+BATTEN_VECTOR_CLONES
+void add_products(double* y, const double* s, const double* x, Index count) {
+    for (Index i = 0; i < count; ++i) y[i] += s[i] * x[i];
+}
+
+} // namespace
+
+void StencilSystem::apply_plane(const double* x, double* y) const {
+    constexpr Index block = 2048;
+    const Index n = size();
+    std::fill(y, y + n, 0.0);
+    for (Index begin = 0; begin < n; begin += block)
+        for (Index place = 0; place < width_; ++place) {
+            const Index offset = flat_offsets_[static_cast<std::size_t>(place)];
+            const Index first =
+                std::max(begin, -offset); // entries that would leave the net are zero
+            const Index last = std::min({begin + block, n, n - offset});
+            if (first >= last) continue;
+            const double* s = stencil_.data() + place * n + first;
+            add_products(y + first, s, x + first + offset, last - first);
+            if (place >= same_slice_) add_products(y + first + offset, s, x + first, last - first);
+        }
+}
+
 void StencilSystem::apply(const PointSet& x, PointSet& y) const {
-    y.fill(0);
-    for_each_entry([&](Index i, Index j, double value) {
-        for (Index d = 0; d < x.dim(); ++d) y(i, d) += value * x(j, d);
+    if (any_closed_) {
+        y.fill(0);
+        for_each_entry([&](Index i, Index j, double value) {
+            for (Index d = 0; d < x.dim(); ++d) y(i, d) += value * x(j, d);
+        });
+        return;
+    }
+    const Index n = size();
+    if (x.dim() == 1) return apply_plane(x.data(), y.data());
+    std::vector<double> planes(static_cast<std::size_t>(2 * n * x.dim()));
+    for_each_chunk(x.dim(), [&](Index d) {
+        double* in = planes.data() + 2 * d * n;
+        double* out = in + n;
+        for (Index i = 0; i < n; ++i) in[i] = x(i, d);
+        apply_plane(in, out);
+        for (Index i = 0; i < n; ++i) y(i, d) = out[i];
     });
 }
 
