@@ -31,6 +31,9 @@ class ChunkPass {
     ChunkSums operator()(const double* t, const double* q, const double* w, Index count) const {
         ChunkSums sums;
         Lanes energy;
+        const int p = knots_.degree();
+        Room room{std::vector<Lanes>(static_cast<std::size_t>(2 * p + 1)),
+                  std::vector<Lanes>(static_cast<std::size_t>((p + 1) * dim_))};
         for (Index i = 0; i < count;) {
             const double inside = knots_.wrapped(t[i]);
             if (!(inside >= knots_.begin() && inside <= knots_.end()))
@@ -44,8 +47,7 @@ class ChunkPass {
             if (last) end = std::upper_bound(t + i, t + count, limit) - t;
             end = std::max(end, i + 1);
             add_span(span, shift,
-                     {t + i, q + i * dim_, w == nullptr ? nullptr : w + i, end - i, dim_}, energy,
-                     sums);
+                     {t + i, q + i * dim_, w == nullptr ? nullptr : w + i, end - i, dim_}, energy, room, sums);
             i = end;
         }
         sums.energy = energy.sum();
@@ -53,13 +55,20 @@ class ChunkPass {
     }
 
   private:
-    void add_span(Index span, double shift, const SpanSamples& samples, Lanes& energy,
+    /// Memory of one chunk's pass, used span after span.
+    struct Room {
+        std::vector<Lanes> moments;
+        std::vector<Lanes> values;
+    };
+
+    void add_span(Index span, double shift, const SpanSamples& samples, Lanes& energy, Room& room,
                   ChunkSums& sums) const {
         const int p = knots_.degree();
         const ChebyshevMaps maps(knots_, span);
-        std::array<Lanes, 2 * max_degree + 1> moments{};
-        std::array<Lanes, (max_degree + 1) * 16> values;
-        std::fill_n(values.begin(), (p + 1) * dim_, Lanes{});
+        std::vector<Lanes>& moments = room.moments;
+        std::vector<Lanes>& values = room.values;
+        std::fill(moments.begin(), moments.end(), Lanes{});
+        std::fill(values.begin(), values.end(), Lanes{});
         add_span_moments(samples, p, maps.middle() + shift, maps.scale(), centre_.data(),
                          moments.data(), values.data(), &energy);
         std::array<double, 2 * max_degree + 1> moment{};

@@ -1,5 +1,6 @@
 #include <batten/system/chebyshev_maps.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -40,9 +41,9 @@ const Transform& transform(int n) {
 ChebyshevMaps::ChebyshevMaps(const KnotVector& knots, Index span)
     : p_(knots.degree()),
       middle_((knots[span] + knots[span + 1]) / 2),
-      scale_(2 / (knots[span + 1] - knots[span])),
-      values_(static_cast<std::size_t>((p_ + 1) * (p_ + 1))),
-      pairs_(static_cast<std::size_t>((p_ + 1) * (p_ + 2) / 2 * (2 * p_ + 1))) {
+      scale_(2 / (knots[span + 1] - knots[span])) {
+    std::fill_n(values_.begin(), (p_ + 1) * (p_ + 1), 0.0);
+    std::fill_n(pairs_.begin(), (p_ + 1) * (p_ + 2) / 2 * (2 * p_ + 1), 0.0);
     const int n = p_ + 1;
     const Transform& t = transform(n);
     for (int j = 0; j < n; ++j) {

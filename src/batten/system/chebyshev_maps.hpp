@@ -2,7 +2,7 @@
 
 #include <batten/basis/basis_functions.hpp>
 
-#include <vector>
+#include <array>
 
 namespace batten {
 
@@ -40,8 +40,8 @@ class ChebyshevMaps {
     int p_;
     double middle_;
     double scale_;
-    std::vector<double> values_;
-    std::vector<double> pairs_;
+    std::array<double, (max_degree + 1) * (max_degree + 1)> values_;
+    std::array<double, (max_degree + 1) * (max_degree + 2) / 2 * (2 * max_degree + 1)> pairs_;
 };
 
 } // namespace batten

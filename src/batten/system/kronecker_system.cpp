@@ -9,7 +9,7 @@ namespace batten {
 
 namespace {
 
-constexpr Index tile = 1024; // doubles of a slice that one task takes through all rows
+constexpr Index tile_columns = 1536; // doubles of a slice that one task takes through all rows
 
 void add_gram_row(BandedMatrix& gram, const Collocation& a, Index j) {
     for (int r = 0; r <= a.degree(); ++r)
@@ -26,39 +26,72 @@ inline __attribute__((always_inline)) Vector load(const double* x) {
     return v;
 }
 
-template <int known_terms>
-inline __attribute__((always_inline)) void
-add_row(const double* row, const double* next, const double* centre, const double* weight,
-        int terms_, Index count, double* sums, Lanes* energy) {
-    const int terms = known_terms > 0 ? known_terms : terms_;
-    Vector e = load(energy->value.data());
-    Index k = 0;
-    for (; k + lanes <= count; k += lanes) {
-        __builtin_prefetch(
-            next + k); // rows lie pages apart: the hardware does not see the next one coming
-        const Vector x = load(row + k) - load(centre + k);
-        e += x * x;
-        for (int r = 0; r < terms; ++r) {
-            const Vector sum = load(sums + r * tile + k) + weight[r] * x;
-            __builtin_memcpy(sums + r * tile + k, &sum, sizeof sum);
+/// Rows of one span over one tile of columns.
+struct TileRows {
+    const double* first;
+    Index stride; ///< doubles from row to row
+    Index rows;
+    const double* centre;
+    const double* weights; ///< (rows x terms)
+    int terms;
+    Index count; ///< columns
+};
+
+/// One strip of `wide` vectors through all rows, sums held in registers where their number is
+/// known.
+template <int known_terms, int wide>
+inline __attribute__((always_inline)) void add_strip(const TileRows& tile, Index at, double* sums,
+                                                     Index sums_stride, Vector& energy) {
+    const int terms = known_terms > 0 ? known_terms : tile.terms;
+    Vector centre[wide];
+    Vector sum[(known_terms > 0 ? known_terms : max_degree + 1) * wide];
+    for (int v = 0; v < wide; ++v) centre[v] = load(tile.centre + at + v * lanes);
+    for (int r = 0; r < terms; ++r)
+        for (int v = 0; v < wide; ++v)
+            sum[r * wide + v] = load(sums + r * sums_stride + at + v * lanes);
+    for (Index j = 0; j < tile.rows; ++j) {
+        const double* row = tile.first + j * tile.stride + at;
+        for (int v = 0; v < wide; ++v) {
+            __builtin_prefetch(row + tile.rows * tile.stride +
+                               v * lanes); // the next span's rows lie pages apart: the hardware
+                                           // does not see them coming
+            const Vector x = load(row + v * lanes) - centre[v];
+            energy += x * x;
+            for (int r = 0; r < terms; ++r) sum[r * wide + v] += tile.weights[j * terms + r] * x;
         }
     }
-    __builtin_memcpy(energy->value.data(), &e, sizeof e);
-    for (; k < count; ++k) {
-        const double x = row[k] - centre[k];
-        energy->value[0] += x * x;
-        for (int r = 0; r < terms; ++r) sums[r * tile + k] += weight[r] * x;
-    }
+    for (int r = 0; r < terms; ++r)
+        for (int v = 0; v < wide; ++v)
+            __builtin_memcpy(sums + r * sums_stride + at + v * lanes, &sum[r * wide + v],
+                             sizeof(Vector));
 }
 
-/// sums[r][k] += weight[r] * (row[k] - centre[k]) and the squares' sum, over one tile of one row.
+template <int known_terms>
+inline __attribute__((always_inline)) void add_strips(const TileRows& tile, double* sums,
+                                                      Index sums_stride, Lanes* energy) {
+    Vector e = load(energy->value.data());
+    Index k = 0;
+    for (; k + 4 * lanes <= tile.count; k += 4 * lanes)
+        add_strip<known_terms, 4>(tile, k, sums, sums_stride, e);
+    for (; k + lanes <= tile.count; k += lanes)
+        add_strip<known_terms, 1>(tile, k, sums, sums_stride, e);
+    __builtin_memcpy(energy->value.data(), &e, sizeof e);
+    for (; k < tile.count; ++k)
+        for (Index j = 0; j < tile.rows; ++j) {
+            const double x = tile.first[j * tile.stride + k] - tile.centre[k];
+            energy->value[0] += x * x;
+            for (int r = 0; r < tile.terms; ++r)
+                sums[r * sums_stride + k] += tile.weights[j * tile.terms + r] * x;
+        }
+}
+
+/// sums[r][k] += weight[j][r] * (row_j[k] - centre[k]) over the rows j, and the squares' sum.
 BATTEN_VECTOR_CLONES
-void add_tile(const double* row, const double* next, const double* centre, const double* weight,
-              int terms, Index count, double* sums, Lanes* energy) {
-    if (terms == 4)
-        add_row<4>(row, next, centre, weight, terms, count, sums, energy);
+void add_tile(const TileRows& tile, double* sums, Index sums_stride, Lanes* energy) {
+    if (tile.terms == 4)
+        add_strips<4>(tile, sums, sums_stride, energy);
     else
-        add_row<0>(row, next, centre, weight, terms, count, sums, energy);
+        add_strips<0>(tile, sums, sums_stride, energy);
 }
 
 } // namespace
@@ -82,28 +115,38 @@ KroneckerSystem::KroneckerSystem(std::vector<KnotVector> axes, std::vector<doubl
 void KroneckerSystem::add(Index first, const Points& slices) {
     const Collocation& a = collocations_[0];
     const Index rows = slices.size() * dim() / slice_values_;
-    const Index tiles = (slice_values_ + tile - 1) / tile;
+    const Index tiles = (slice_values_ + tile_columns - 1) / tile_columns;
     std::vector<Lanes> energies(static_cast<std::size_t>(tiles));
     for_each_chunk(tiles, [&](Index t) {
-        const Index begin = t * tile;
-        const Index count = std::min(tile, slice_values_ - begin);
-        alignas(64) double sums[(max_degree + 1) * tile];
+        const Index begin = t * tile_columns;
+        const Index count = std::min(tile_columns, slice_values_ - begin);
+        double* sums = slices_sum_.data() + begin;
+        std::vector<double> weights;
         for (Index j = 0; j < rows;) { // rows of one span share their columns
             const Index column = a.column(first + j, 0);
-            std::fill_n(sums, (a.degree() + 1) * tile, 0.0);
-            for (; j < rows && a.column(first + j, 0) == column; ++j) {
-                double weight[max_degree + 1];
-                for (int r = 0; r <= a.degree(); ++r) weight[r] = a.value(first + j, r);
-                const double* row = slices.data() + j * slice_values_ + begin;
-                add_tile(row, j + 1 < rows ? row + slice_values_ : row,
-                         slice_centre_.data() + begin, weight, a.degree() + 1, count, sums,
-                         &energies[static_cast<std::size_t>(t)]);
+            const Index span_first = j;
+            weights.clear();
+            for (; j < rows && a.column(first + j, 0) == column; ++j)
+                for (int r = 0; r <= a.degree(); ++r) weights.push_back(a.value(first + j, r));
+            const TileRows group{slices.data() + span_first * slice_values_ + begin,
+                                 slice_values_,
+                                 j - span_first,
+                                 slice_centre_.data() + begin,
+                                 weights.data(),
+                                 a.degree() + 1,
+                                 count};
+            Lanes& energy = energies[static_cast<std::size_t>(t)];
+            if (column + a.degree() < a.columns()) {
+                add_tile(group, sums + column * slice_values_, slice_values_, &energy);
+                continue;
             }
-            for (int r = 0; r <= a.degree(); ++r) {
-                double* to =
-                    slices_sum_.data() + a.column(first + j - 1, r) * slice_values_ + begin;
-                for (Index k = 0; k < count; ++k) to[k] += sums[r * tile + k];
-            }
+            // around the end of a closed axis the columns do not follow each other
+            std::vector<double> around(static_cast<std::size_t>((a.degree() + 1) * tile_columns));
+            add_tile(group, around.data(), tile_columns, &energy);
+            for (int r = 0; r <= a.degree(); ++r)
+                for (Index k = 0; k < count; ++k)
+                    sums[a.column(span_first + first, r) * slice_values_ + k] +=
+                        around[static_cast<std::size_t>(r * tile_columns + k)];
         }
     });
     for (const Lanes& energy : energies) data_energy_ += energy.sum();
