@@ -173,17 +173,28 @@ TEST(Fit, identical_consecutive_samples_are_legal_and_said) {
 }
 
 TEST(Threads, do_not_change_a_bit) {
-    for (const char* name : {"rose", "peaks", "bent-block"}) {
-        const Samples samples = generate(name);
-        FitOptions options =
-            size(std::vector<Index>(static_cast<std::size_t>(samples.axis_count()), 7));
-        options.threads = 1;
-        const std::vector<double> reference =
-            fit(samples, options).spline.control_points().values();
+    struct Problem {
+        Samples samples;
+        FitOptions options;
+    };
+    std::vector<Problem> problems;
+    problems.push_back({generate("rose", {200000}), size({500})}); // several chunks
+    problems.push_back({generate("peaks", {600, 700}), size({40, 50})});
+    problems.push_back({generate("bent-block"), size({7, 7, 7})});
+    Problem cloud{sequence(random_points(100000, 3, 4)), size({20, 25})};
+    PointSet uv = random_points(100000, 2, 5);
+    cloud.options.shape.parameters = Parameters{{}, std::move(uv)};
+    problems.push_back(std::move(cloud));
+    for (Problem& problem : problems) {
+        problem.options.threads = 1;
+        const FitResult reference = fit(problem.samples, problem.options);
         for (int threads : {2, 3, 8}) {
-            options.threads = threads;
-            const FitResult result = fit(samples, options);
-            EXPECT_EQ(result.spline.control_points().values(), reference) << name << " " << threads;
+            problem.options.threads = threads;
+            const FitResult result = fit(problem.samples, problem.options);
+            EXPECT_EQ(result.spline.control_points().values(),
+                      reference.spline.control_points().values())
+                << threads;
+            EXPECT_EQ(result.report.deviation.rms, reference.report.deviation.rms);
         }
     }
 }

@@ -1,13 +1,13 @@
 #include <batten/measure/deviation.hpp>
 
+#include <batten/measure/curve_deviation.hpp>
+
 #include <algorithm>
 #include <cmath>
 
 namespace batten {
 
 namespace {
-
-constexpr Index chunk_size = 1 << 14;
 
 std::vector<double> lengths(const PointSet& values, const Points& points) {
     std::vector<double> result(static_cast<std::size_t>(points.size()));
@@ -28,16 +28,7 @@ std::vector<double> parametric_deviations(const Spline& spline, const Samples& s
         return lengths(evaluate(spline, parameters.scattered), samples.points);
     if (parameters.axes.size() > 1)
         return lengths(evaluate_grid(spline, parameters.axes), samples.points);
-    std::vector<double> result(static_cast<std::size_t>(samples.size()));
-    const Points parameter(parameters.axes[0].data(), samples.size(), 1);
-    for_each_chunk((samples.size() + chunk_size - 1) / chunk_size, [&](Index chunk) {
-        const Index first = chunk * chunk_size;
-        const Index count = std::min(chunk_size, samples.size() - first);
-        const auto part = lengths(evaluate(spline, parameter.slice(first, count)),
-                                  samples.points.slice(first, count));
-        std::ranges::copy(part, result.begin() + first);
-    });
-    return result;
+    return curve_deviations(spline, samples.points, parameters.axes[0]);
 }
 
 Deviation summarise(const std::vector<double>& deviations, DeviationKind kind) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 namespace batten {
 
@@ -25,15 +26,37 @@ double step_length(const Strand& strand, Index i, Index j, Parametrization rule)
     return rule == Parametrization::centripetal ? std::sqrt(length) : length;
 }
 
+constexpr Index chunk_size = 1 << 15;
+
+/// Accumulated step lengths of a strand into `t`; returns the whole length. In chunks, whose sums
+/// are added in order.
+double accumulate(const Strand& strand, Parametrization rule, std::vector<double>& t) {
+    const Index chunks = (strand.count + chunk_size - 1) / chunk_size;
+    std::vector<double> offset(static_cast<std::size_t>(chunks));
+    for_each_chunk(chunks, [&](Index chunk) {
+        double sum = 0;
+        for (Index i = chunk * chunk_size; i < std::min(strand.count, (chunk + 1) * chunk_size);
+             ++i) {
+            if (i > 0) sum += step_length(strand, i - 1, i, rule);
+            t[static_cast<std::size_t>(i)] = sum;
+        }
+        offset[static_cast<std::size_t>(chunk)] = sum;
+    });
+    double before = 0;
+    for (double& sum : offset) before += std::exchange(sum, before);
+    if (chunks > 1)
+        for_each_chunk(chunks, [&](Index chunk) {
+            for (Index i = chunk * chunk_size; i < std::min(strand.count, (chunk + 1) * chunk_size);
+                 ++i)
+                t[static_cast<std::size_t>(i)] += offset[static_cast<std::size_t>(chunk)];
+        });
+    return before;
+}
+
 /// Adds the strand's normalised parameters to `sum`; returns false when it has no length.
 bool add_normalised(const Strand& strand, Parametrization rule, Closure closure,
                     std::vector<double>& scratch, std::vector<double>& sum) {
-    double total = 0;
-    scratch[0] = 0;
-    for (Index i = 1; i < strand.count; ++i) {
-        total += step_length(strand, i - 1, i, rule);
-        scratch[static_cast<std::size_t>(i)] = total;
-    }
+    double total = accumulate(strand, rule, scratch);
     if (closure == Closure::closed) total += step_length(strand, strand.count - 1, 0, rule);
     if (!(total > 0)) return false;
     for (std::size_t i = 0; i < scratch.size(); ++i) sum[i] += scratch[i] / total;

@@ -47,7 +47,8 @@ class ChunkPass {
             if (last) end = std::upper_bound(t + i, t + count, limit) - t;
             end = std::max(end, i + 1);
             add_span(span, shift,
-                     {t + i, q + i * dim_, w == nullptr ? nullptr : w + i, end - i, dim_}, energy, room, sums);
+                     {t + i, q + i * dim_, w == nullptr ? nullptr : w + i, end - i, dim_}, energy,
+                     room, sums);
             i = end;
         }
         sums.energy = energy.sum();

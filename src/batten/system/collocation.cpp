@@ -120,16 +120,20 @@ namespace {
 /// Matches control points to distinct samples inside their supports, greedily in order; -1 when all
 /// n are matched, else the first that finds none. Greedy is exact as supports and samples both
 /// ascend.
-Index first_unmatched(const KnotVector& knots, const std::vector<double>& distinct) {
-    std::size_t j = 0;
+Index first_unmatched(const KnotVector& knots, std::span<const double> ascending) {
+    auto at = ascending.begin();
     for (Index i = 0; i < knots.control_count(); ++i) {
         const double low = knots[i];
         const double high = knots[i + knots.degree() + 1];
         const bool at_begin = low == knots.begin() && knots[i + knots.degree()] == low;
         const bool at_end = high == knots.end() && knots[i + 1] == high;
-        while (j < distinct.size() && (at_begin ? distinct[j] < low : distinct[j] <= low)) ++j;
-        if (j == distinct.size() || (at_end ? distinct[j] > high : distinct[j] >= high)) return i;
-        ++j;
+        if (at != ascending.end() && (at_begin ? *at < low : *at <= low))
+            at = at_begin ? std::lower_bound(at, ascending.end(), low)
+                          : std::upper_bound(at, ascending.end(), low);
+        if (at == ascending.end() || (at_end ? *at > high : *at >= high)) return i;
+        const double used = *at;
+        if (++at != ascending.end() && *at == used)
+            at = std::upper_bound(at, ascending.end(), used);
     }
     return -1;
 }
@@ -181,6 +185,7 @@ std::string spans_without(const KnotVector& knots, const std::vector<double>& di
 
 std::optional<std::string> undetermined(const KnotVector& knots,
                                         std::span<const double> parameters) {
+    if (!knots.closed() && first_unmatched(knots, parameters) < 0) return std::nullopt;
     std::vector<double> distinct;
     for (double t : parameters) distinct.push_back(knots.wrapped(t));
     if (knots.closed()) {
@@ -189,8 +194,7 @@ std::optional<std::string> undetermined(const KnotVector& knots,
         std::ranges::sort(distinct);
     }
     distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-    if (knots.closed() ? closed_matched(knots, distinct) : first_unmatched(knots, distinct) < 0)
-        return std::nullopt;
+    if (knots.closed() && closed_matched(knots, distinct)) return std::nullopt;
     return spans_without(knots, distinct);
 }
 

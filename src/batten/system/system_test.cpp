@@ -1,0 +1,227 @@
+#include "problems.hpp"
+
+#include <batten/iterate/lspia.hpp>
+#include <batten/system/factored_system.hpp>
+#include <batten/system/stencil_system.hpp>
+
+#include <Eigen/Dense>
+#include <fstream>
+
+namespace batten {
+namespace {
+
+using testing::random_parameters;
+using testing::random_points;
+
+using Long = long double;
+using LongMatrix = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// The de Boor recursion in extended precision.
+Long long_basis(const KnotVector& k, Index i, int p, Long t) {
+    if (p == 0)
+        return (t >= k[i] && t < k[i + 1]) || (t == k.end() && t == k[i + 1] && k[i] < k[i + 1])
+                   ? 1
+                   : 0;
+    Long sum = 0;
+    if (k[i + p] > k[i])
+        sum += (t - Long(k[i])) / (Long(k[i + p]) - Long(k[i])) * long_basis(k, i, p - 1, t);
+    if (k[i + p + 1] > k[i + 1])
+        sum += (Long(k[i + p + 1]) - t) / (Long(k[i + p + 1]) - Long(k[i + 1])) *
+               long_basis(k, i + 1, p - 1, t);
+    return sum;
+}
+
+LongMatrix long_collocation(const KnotVector& k, const std::vector<double>& t) {
+    LongMatrix a = LongMatrix::Zero(static_cast<Index>(t.size()), k.control_count());
+    for (Index j = 0; j < a.rows(); ++j) {
+        const Index span = k.span(t[static_cast<std::size_t>(j)]);
+        for (Index i = span - k.degree(); i <= span; ++i)
+            a(j, i) = long_basis(k, i, k.degree(), t[static_cast<std::size_t>(j)]);
+    }
+    return a;
+}
+
+TEST(OnePass, control_points_agree_with_extended_precision) {
+    for (int p : {1, 3, 5}) {
+        const auto t = random_parameters(3000, 1);
+        const PointSet q = random_points(3000, 3, 2);
+        const KnotVector k = knots_from_parameters(t, p, 40);
+        const LongMatrix a = long_collocation(k, t);
+        LongMatrix rhs(3000, 3);
+        for (Index j = 0; j < 3000; ++j)
+            for (Index d = 0; d < 3; ++d) rhs(j, d) = q(j, d);
+        const LongMatrix gram = a.transpose() * a;
+        const LongMatrix exact = gram.ldlt().solve(a.transpose() * rhs);
+        const auto system = assemble({k}, testing::sequence(q), {{t}, {}});
+        const PointSet ours = uncentred(solve_direct(*system), system->centre());
+        double largest = 0;
+        for (Index i = 0; i < 40; ++i)
+            for (Index d = 0; d < 3; ++d)
+                largest =
+                    std::max(largest, static_cast<double>(std::abs(exact(i, d) - ours(i, d))));
+        EXPECT_LT(largest, 1e-11 * static_cast<double>(exact.cwiseAbs().maxCoeff()))
+            << p; // condition of A^T A: 8, 1e3, 1e5
+    }
+}
+
+TEST(OnePass, moments_stay_accurate_up_to_degree_9) {
+    for (int p = 1; p <= max_degree; ++p) {
+        const auto t = random_parameters(2000, 3);
+        const KnotVector k = knots_from_parameters(t, p, p + 12);
+        const LongMatrix a = long_collocation(k, t);
+        const LongMatrix gram = a.transpose() * a;
+        const auto system = assemble({k}, testing::sequence(random_points(2000, 1, 4)), {{t}, {}});
+        const BandedMatrix& ours = *system->factors()[0];
+        for (Index i = 0; i < ours.size(); ++i)
+            for (int b = 0; b <= p && i + b < ours.size(); ++b)
+                EXPECT_NEAR(ours.at(i, b), static_cast<double>(gram(i, i + b)),
+                            1e-13 * static_cast<double>(gram.cwiseAbs().maxCoeff()))
+                    << p;
+    }
+}
+
+TEST(OnePass, chunks_may_come_one_by_one) {
+    const auto t = random_parameters(50000, 5);
+    const PointSet q = random_points(50000, 2, 6);
+    const KnotVector k = uniform_knots(3, 60, 0, 1);
+    BandedSystem whole(k, {0, 0});
+    whole.add(t, q, {});
+    BandedSystem parts(k, {0, 0});
+    constexpr Index part =
+        1 << 14; // the chunks that the whole is taken in: then the bits are the same
+    for (Index first = 0; first < q.size(); first += part) {
+        const Index count = std::min(part, q.size() - first);
+        parts.add(
+            std::span(t).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)),
+            Points(q).slice(first, count), {});
+    }
+    EXPECT_EQ(whole.rhs().values(), parts.rhs().values());
+    EXPECT_EQ(whole.sample_count(), parts.sample_count());
+    const Samples peaks = generate("peaks", {50, 60});
+    const Parameters uv =
+        parametrize(peaks, Parametrization::uniform, {Closure::open, Closure::open});
+    const std::vector<KnotVector> axes(2, uniform_knots(3, 12, 0, 1));
+    KroneckerSystem once(axes, {0, 0, 0}, uv);
+    once.add(0, peaks.points);
+    once.finish();
+    KroneckerSystem twice(axes, {0, 0, 0}, uv);
+    twice.add(0, peaks.points.slice(0, 20 * 60));
+    twice.add(20, peaks.points.slice(20 * 60, 30 * 60));
+    twice.finish();
+    EXPECT_LT(testing::largest_difference(once.rhs(), twice.rhs()), 1e-13);
+}
+
+TEST(OnePass, cells_and_single_samples_give_one_matrix) {
+    // the 3-axis path takes every sample by itself: with one more axis of degree 1 over [0, 1] and
+    // all samples at 0 it must agree
+    const PointSet q = random_points(4000, 2, 7);
+    PointSet uv = random_points(4000, 2, 8);
+    PointSet uvw(4000, 3);
+    for (Index i = 0; i < 4000; ++i)
+        for (Index k = 0; k < 2; ++k) uvw(i, k) = uv(i, k);
+    std::vector<double> weights = random_points(4000, 1, 9).values();
+    for (double& w : weights) w += 1.5;
+    for (Closure closure : {Closure::open, Closure::closed}) {
+        const std::vector<KnotVector> axes{uniform_knots(3, 9, -1, 1, closure),
+                                           uniform_knots(2, 8, -1, 1)};
+        StencilSystem cells(axes, {0.1, 0.2});
+        cells.add(q, uv, weights);
+        std::vector<KnotVector> three = axes;
+        three.push_back(KnotVector(1, {0, 0, 1, 1}));
+        StencilSystem single(three, {0.1, 0.2});
+        single.add(q, uvw, weights);
+        const PointSet x = random_points(cells.size(), 2, 3);
+        PointSet wide(single.size(), 2);
+        for (Index i = 0; i < x.size(); ++i)
+            for (Index d = 0; d < 2; ++d) wide(2 * i, d) = x(i, d);
+        PointSet y(cells.size(), 2);
+        PointSet z(single.size(), 2);
+        cells.apply(x, y);
+        single.apply(wide, z);
+        for (Index i = 0; i < x.size(); ++i)
+            for (Index d = 0; d < 2; ++d) {
+                EXPECT_NEAR(y(i, d), z(2 * i, d), 1e-11);
+                EXPECT_NEAR(cells.rhs()(i, d), single.rhs()(2 * i, d), 1e-11);
+            }
+        EXPECT_NEAR(cells.data_energy(), single.data_energy(), 1e-9);
+    }
+}
+
+/// A normal system that counts what an iteration asks of it.
+class Counting : public NormalSystem {
+  public:
+    explicit Counting(const NormalSystem& inner)
+        : NormalSystem(inner.axes(), inner.centre()), inner_(inner) {
+        rhs_ = inner.rhs();
+    }
+    void apply(const PointSet& x, PointSet& y) const override {
+        ++applied;
+        inner_.apply(x, y);
+    }
+    std::vector<double> diagonal() const override { return inner_.diagonal(); }
+    std::vector<const BandedMatrix*> factors() const override { return inner_.factors(); }
+    mutable Index applied = 0;
+
+  private:
+    const NormalSystem& inner_;
+};
+
+TEST(OnePass, iterations_touch_no_sample) {
+    // after assembly the samples are overwritten: an iteration that looked at them would go astray
+    PointSet q = random_points(10000, 2, 1);
+    std::vector<double> t = random_parameters(10000, 2);
+    const KnotVector k = uniform_knots(3, 100, 0, 1);
+    BandedSystem system(k, {0, 0});
+    system.add(t, q, {});
+    const PointSet direct = solve_direct(system);
+    q.fill(NAN);
+    std::fill(t.begin(), t.end(), NAN);
+    const Counting counted(system);
+    Lspia lspia(counted);
+    PointSet control(100, 2);
+    const Summary summary = iterate(lspia, control, {.relative_gradient = 1e-12});
+    EXPECT_LT(testing::largest_difference(control, direct), 1e-9);
+    EXPECT_EQ(counted.applied,
+              summary.iterations + 1); // one product of the control points' size each
+}
+
+/// Peak resident memory of this process in bytes, reset first.
+std::size_t peak_beyond(const std::function<void()>& work) {
+    const auto value = [](const char* key) {
+        std::ifstream status("/proc/self/status");
+        for (std::string word; status >> word;)
+            if (word == key) {
+                std::size_t kib = 0;
+                status >> kib;
+                return kib * 1024;
+            }
+        return std::size_t{0};
+    };
+    std::ofstream("/proc/self/clear_refs") << "5";
+    const std::size_t before = value("VmRSS:");
+    work();
+    return value("VmHWM:") - std::min(before, value("VmHWM:"));
+}
+
+TEST(OnePass, memory_does_not_grow_with_the_samples) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the sanitizer's own memory would be counted";
+#endif
+    const Index m = 10'000'000;
+    PointSet q(m, 3);
+    std::vector<double> t(static_cast<std::size_t>(m));
+    for (Index i = 0; i < m; ++i) {
+        t[static_cast<std::size_t>(i)] = static_cast<double>(i) / static_cast<double>(m - 1);
+        q(i, 0) = q(i, 1) = q(i, 2) = t[static_cast<std::size_t>(i)];
+    }
+    const KnotVector k = uniform_knots(3, 10000, 0, 1);
+    const std::size_t peak = peak_beyond([&] {
+        BandedSystem system(k, {0, 0, 0});
+        system.add(t, q, {});
+        solve_direct(system);
+    });
+    EXPECT_LT(peak, std::size_t{16} << 20U) << peak;
+}
+
+} // namespace
+} // namespace batten
