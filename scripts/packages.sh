@@ -3,7 +3,7 @@
 build_packages="g++ cmake ninja-build libeigen3-dev libtbb-dev libfmt-dev nlohmann-json3-dev libcli11-dev"
 test_packages="libgtest-dev python3 python3-numpy python3-scipy"
 
-race_packages="libbenchmark-dev python3 python3-numpy python3-scipy libocct-modeling-algorithms-dev libsisl-dev"
+race_packages="libbenchmark-dev python3 python3-numpy python3-scipy libocct-modeling-algorithms-dev libocct-modeling-data-dev libsisl-dev"
 
 # Installs those of the named packages that are missing, or says the one line that would.
 need() {
