@@ -4,6 +4,9 @@
 
 namespace batten::command {
 
+/// Thrown once everything is written: the fit stands, but the stated tolerance was not reached.
+struct ToleranceNotMet {};
+
 /// Each adds its subcommand; the work is done in the subcommand's callback and reports trouble by
 /// exceptions.
 void add_fit(CLI::App& app);

@@ -42,6 +42,10 @@ struct FitFlags {
     double stop_relative_gradient = 0;
     double stop_deviation = 0;
     std::string weights;
+    double tolerance = 0;
+    std::string tolerances;
+    Index max_control_points = 0;
+    std::string corners = "auto";
     std::string interpolate;
     std::string preserve;
     std::string moving;
@@ -50,12 +54,26 @@ struct FitFlags {
 };
 
 /// Options of the plan that this version does not have: refused by name, never ignored.
-constexpr const char* planned[] = {"--tolerance", "--project"};
+constexpr const char* planned[] = {"--project", "--tangents", "--boundary", "--robust",
+                                   "--smooth",  "--unit",     "--report"};
 
 void add_shape_flags(CLI::App& fit, FitFlags& flags) {
     fit.add_option("--control-points,-n", flags.control_points,
                    "Number of control points: 30, 20x30 or 8x8x8")
         ->group("Size");
+    fit.add_option("--tolerance,-t", flags.tolerance,
+                   "Every sample within this distance, with as few control points as it takes")
+        ->group("Size");
+    fit.add_option("--tolerances", flags.tolerances, "File of one tolerance per sample")
+        ->group("Size");
+    fit.add_option("--max-control-points", flags.max_control_points,
+                   "Not more than these for a tolerance")
+        ->check(CLI::PositiveNumber)
+        ->group("Size");
+    fit.add_option("--corners", flags.corners,
+                   "auto, none, or a list of samples: where a curve may bend sharply")
+        ->group("Size")
+        ->capture_default_str();
     fit.add_option("--degree,-p", flags.degree, "Degree 1 to 9, one for all axes or one each")
         ->delimiter(',')
         ->group("Shape")
@@ -245,6 +263,34 @@ HoldOptions hold_options(const FitFlags& flags, const Samples& samples) {
     return hold;
 }
 
+ToleranceOptions tolerance_options(const FitFlags& flags, const CLI::App& fit,
+                                   const Samples& samples) {
+    ToleranceOptions tolerance;
+    if (fit.count("--tolerance") > 0 && !(flags.tolerance > 0))
+        throw InvalidInput(fmt::format("--tolerance {}: must be positive", flags.tolerance));
+    if (fit.count("--tolerance") + fit.count("--tolerances") > 0 && !flags.control_points.empty())
+        throw InvalidInput("--tolerance and --control-points: one of them states the size; "
+                           "--max-control-points bounds a tolerance");
+    tolerance.value = flags.tolerance;
+    if (!flags.tolerances.empty()) tolerance.per_sample = read_table(flags.tolerances).values();
+    tolerance.max_control_points = flags.max_control_points;
+    const bool sized = !flags.control_points.empty() ||
+                       (flags.knots != "data" && flags.knots != "uniform") ||
+                       flags.method == "pia" || flags.method == "epia";
+    if (!tolerance.stated() &&
+        !sized) { // neither a size nor a tolerance: a thousandth of the data's size
+        tolerance.value = diagonal(samples.points) / 1000;
+        if (!(tolerance.value > 0)) tolerance.value = 1e-3;
+    }
+    if (flags.corners == "none")
+        tolerance.corners = Corners::none;
+    else if (flags.corners != "auto") {
+        tolerance.corners = Corners::given;
+        tolerance.corner_samples = index_list("--corners", flags.corners);
+    }
+    return tolerance;
+}
+
 StopRule stop_rule(const FitFlags& flags, const CLI::App& fit) {
     StopRule stop;
     const bool relative = fit.count("--stop-relative-gradient") > 0;
@@ -275,10 +321,7 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     const Samples samples = samples_of(flags);
     FitOptions options;
     options.shape = shape_options(flags, fit_app.count("--closed") > 0, samples);
-    const bool grows =
-        flags.method == "pia" || flags.method == "epia"; // these find their own number
-    if (options.shape.control_points.empty() && options.shape.knots.empty() && !grows)
-        throw InvalidInput("state a size: --control-points 30 (or 20x30 for a grid)");
+    options.tolerance = tolerance_options(flags, fit_app, samples);
     options.method = method_options(flags);
     options.hold = hold_options(flags, samples);
     if (!flags.moving.empty()) options.method.moving = index_list("--moving", flags.moving);
@@ -291,7 +334,10 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
         return Continue::yes;
     };
     progress.say("fitting");
-    const FitResult result = fit(samples, options);
+    FitResult result = fit(samples, options);
+    if (result.report.tolerance > 0 && flags.tolerance == 0 && flags.tolerances.empty())
+        result.report.notes.emplace_back(
+            "no size and no tolerance were stated: a thousandth of the data's diagonal was taken");
     if (result.report.termination == Termination::cancelled) throw Cancelled("interrupted");
     if (!result.report.usable())
         throw SolverError(
@@ -303,6 +349,7 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     if (!flags.summary.empty()) write_file(flags.summary, result.report.to_json());
     const bool stdout_taken = flags.summary == "-" || std::ranges::count(flags.outputs, "-") > 0;
     if (!flags.quiet) fmt::print(stdout_taken ? stderr : stdout, "{}", result.report.full());
+    if (result.report.termination == Termination::tolerance_not_met) throw ToleranceNotMet{};
 }
 
 } // namespace
@@ -321,6 +368,7 @@ void add_fit(CLI::App& app) {
     add_shape_flags(*fit, *flags);
     add_method_flags(*fit, *flags);
     fit->footer("Examples:\n"
+                "  batten fit section.csv --tolerance 0.01 --interpolate ends -o section.json\n"
                 "  batten fit section.csv --control-points 20 -o section.json -o section.svg\n"
                 "  batten fit terrain.npy --heights --spacing 60,60 --control-points 90x100 -o "
                 "terrain.json\n"

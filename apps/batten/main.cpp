@@ -11,7 +11,7 @@ namespace {
 
 using namespace batten;
 
-enum ExitStatus { done = 0, wrong_input = 2, file_trouble = 3, stopped = 130 };
+enum ExitStatus { done = 0, wrong_input = 2, file_trouble = 3, not_within = 4, stopped = 130 };
 
 constexpr const char* next_steps =
     "batten fits B-spline curves, surfaces and volumes to data points. Try\n\n"
@@ -82,6 +82,8 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
         return complain(words_for(error, app), wrong_input);
+    } catch (const command::ToleranceNotMet&) {
+        return not_within;
     } catch (const Cancelled&) {
         return complain("interrupted; nothing was written", stopped);
     } catch (const FileError& error) {

@@ -2,6 +2,7 @@
 
 #include <batten/basis/place_knots.hpp>
 #include <batten/fit/curve_pieces.hpp>
+#include <batten/measure/between_samples.hpp>
 #include <batten/system/collocation.hpp>
 
 #include <algorithm>
@@ -104,6 +105,11 @@ std::vector<double> knot_significance(const CurveTask& task, const CurveTrial& t
     return result;
 }
 
+double between(const CurveTask& task, const CurveTrial& trial) {
+    return check_between(spline_of(trial), task.samples.points, trial.parameters, task.tolerance)
+        .excess;
+}
+
 /// Tries the trial without some of its knots.
 bool without(const CurveTask& task, CurveTrial& trial, const std::vector<double>& interior,
              int rounds) {
@@ -112,12 +118,14 @@ bool without(const CurveTask& task, CurveTrial& trial, const std::vector<double>
     std::fill(attempt.weights.begin(), attempt.weights.end(), 1.0);
     if (undetermined(attempt.knots, attempt.parameters)) return false;
     if (!settle(task, attempt, rounds, KnotShift::allowed)) return false;
+    if (between(task, attempt) > task.between) return false;
     trial = std::move(attempt);
     return true;
 }
 
 /// Adds the corners' knots, of full multiplicity, to ascending others.
 std::vector<double> with_corners(const CurveTask& task, std::vector<double> interior) {
+    for (Index i : task.corners) std::erase(interior, task.parameters[static_cast<std::size_t>(i)]);
     for (Index i : task.corners)
         interior.insert(interior.end(), static_cast<std::size_t>(task.degree),
                         task.parameters[static_cast<std::size_t>(i)]);
@@ -274,9 +282,43 @@ void thin_one_by_one(const CurveTask& task, CurveTrial& trial) {
     }
 }
 
+/// Where the curve strays between two samples: knots there, until it does not, or as before when
+/// that does not help.
+void calm(const CurveTask& task, CurveTrial& trial, Index most) {
+    constexpr int most_tries = 12;
+    CurveTrial attempt = trial;
+    for (int tries = 0; tries < most_tries; ++tries) {
+        const BetweenSamples worst = check_between(spline_of(attempt), task.samples.points,
+                                                   attempt.parameters, task.tolerance);
+        if (worst.good) {
+            trial = std::move(attempt);
+            return;
+        }
+        const auto a = static_cast<std::size_t>(worst.worst_sample);
+        const bool seam = a + 1 == attempt.parameters.size();
+        const double from = attempt.parameters[a];
+        const double to = seam ? attempt.knots.end() : attempt.parameters[a + 1];
+        // a knot to either side: the stretch between the samples gets a piece of its own
+        const double width = std::max(to - from, 1e-6 * attempt.knots.length());
+        if (!refine(task, attempt,
+                    {std::max(from - width / 2, attempt.knots.begin() + width / 4),
+                     std::min(to + width / 2, attempt.knots.end() - width / 4)},
+                    most))
+            return;
+        attempt.parameters = task.parameters;
+        std::fill(attempt.weights.begin(), attempt.weights.end(), 1.0);
+        if (!settle(task, attempt, 6, KnotShift::none)) {
+            if (!refine(task, attempt, knots_where_the_error_is(task, attempt), most)) return;
+            settle(task, attempt, 6, KnotShift::none);
+            if (attempt.worst > 1) return;
+        }
+    }
+}
+
 } // namespace
 
-CurveWithin few_knots(const CurveTask& task, Index most) {
+CurveWithin few_knots(const CurveTask& given, Index most) {
+    CurveTask task = given;
     constexpr int most_rounds = 60;
     CurveWithin result;
     CurveTrial& trial = result.trial;
@@ -299,8 +341,12 @@ CurveWithin few_knots(const CurveTask& task, Index most) {
         }
     }
     result.met = trial.worst <= 1;
+    if (result.met) calm(task, trial, most);
     result.stages.emplace_back("refined", trial.knots.free_count());
     if (!result.met) return result;
+    task.between = std::max(
+        1.0, between(task,
+                     trial)); // where the samples themselves go back and forth no curve is within 1
     spread_out(task, trial);
     result.stages.emplace_back("spread", trial.knots.free_count());
     thin_in_batches(task, trial);

@@ -21,6 +21,9 @@ struct CurveTask {
     /// Samples that are corners: a knot of full multiplicity each, at the sample's parameter, which
     /// stays.
     std::vector<Index> corners{};
+    /// Greatest part of what is allowed between samples (measure/between_samples.hpp) that a
+    /// thinner curve may use.
+    double between = 1;
 };
 
 /// A curve on the way: knots, parameters and weights of the samples, and how far it is from its

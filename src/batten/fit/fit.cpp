@@ -5,6 +5,7 @@
 #include <batten/fit/pia.hpp>
 #include <batten/fit/plan.hpp>
 #include <batten/fit/run.hpp>
+#include <batten/fit/tolerance.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/system/collocation.hpp>
 
@@ -120,7 +121,7 @@ void describe(FitResult& result, const Samples& samples, const FitOptions& optio
     report.data_size = diagonal(samples.points);
     const std::vector<double> deviations =
         parametric_deviations(result.spline, samples, result.parameters);
-    report.deviation = summarise(deviations, DeviationKind::parametric);
+    report.deviation = summarise(deviations, report.deviation.kind);
     report.interpolated = static_cast<Index>(options.hold.interpolate.size());
     for (Index i : options.hold.interpolate)
         report.constraint_error =
@@ -135,9 +136,10 @@ FitResult fit(const Samples& samples, const FitOptions& options) {
     check_settings(method_entry(options.method.name), options.method.settings);
     stop_if_cancelled(options);
     const std::string& method = options.method.name;
-    FitResult result = method == "pia"    ? fit_pia(samples, options)
-                       : method == "epia" ? fit_epia(samples, options)
-                                          : fit_fixed(samples, options);
+    FitResult result = method == "pia"              ? fit_pia(samples, options)
+                       : method == "epia"           ? fit_epia(samples, options)
+                       : options.tolerance.stated() ? fit_to_tolerance(samples, options)
+                                                    : fit_fixed(samples, options);
     Stopwatch watch;
     describe(result, samples, options);
     result.report.seconds.emplace_back("deviation", watch.lap());

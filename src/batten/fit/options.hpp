@@ -58,9 +58,31 @@ struct HoldOptions {
     Preserve preserve = Preserve::nothing;
 };
 
+/// Where a curve may have corners: knots of full multiplicity.
+enum class Corners {
+    automatic, ///< where the samples turn sharply, if that takes fewer control points
+    none,
+    given, ///< ToleranceOptions::corner_samples
+};
+
+/// A distance that no sample may be from the spline; then the number of control points is found.
+struct ToleranceOptions {
+    /// For all samples, in their unit; 0: the number of control points is stated instead.
+    double value = 0;
+    /// One per sample, in place of `value`; all positive.
+    std::vector<double> per_sample{};
+    /// Not more control points than this in all; 0: nine tenths of the samples.
+    Index max_control_points = 0;
+    Corners corners = Corners::automatic;
+    std::vector<Index> corner_samples{};
+
+    bool stated() const { return value != 0 || !per_sample.empty(); }
+};
+
 /// Everything a fit can be told; the defaults are what `batten fit` does.
 struct FitOptions {
     ShapeOptions shape{};
+    ToleranceOptions tolerance{};
     MethodOptions method{};
     HoldOptions hold{};
     StopRule stop{};

@@ -40,7 +40,14 @@ struct FitReport {
     Index interpolated = 0;      ///< samples that must be hit exactly
     double constraint_error = 0; ///< largest distance from one of them
     Index inflections = -1;      ///< of the control polygon, where they are kept; else -1
-    double data_size = 0;        ///< diagonal of the samples' box
+    double tolerance = 0;        ///< as stated, 0 when none was (per sample: the smallest)
+    std::string verdict;         ///< whether and how the tolerance was met, in words
+    double noise_level = 0;      ///< of the samples, where it was estimated; else 0
+    double between_samples = 0; ///< part of what is allowed between samples that is used: at most 1
+                                ///< is good; 0 where not checked
+    std::vector<std::pair<std::string, Index>>
+        stages;           ///< control points after each stage of a fit to a tolerance
+    double data_size = 0; ///< diagonal of the samples' box
     std::vector<std::pair<std::string, double>> seconds; ///< per stage, in order
     std::vector<HistoryEntry> history;
     std::vector<std::string> notes;

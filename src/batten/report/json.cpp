@@ -56,6 +56,14 @@ std::string FitReport::to_json() const {
         json["constraint_error"] = number(constraint_error);
     }
     if (inflections >= 0) json["inflections"] = inflections;
+    if (tolerance > 0) {
+        json["tolerance"] = tolerance;
+        json["verdict"] = verdict;
+        if (noise_level > 0) json["noise_level"] = number(noise_level);
+        if (between_samples > 0) json["between_samples"] = number(between_samples);
+        json["stages"] = Json::object();
+        for (const auto& [stage, count] : stages) json["stages"][stage] = count;
+    }
     json["data_size"] = data_size;
     json["seconds"] = Json::object();
     for (const auto& [stage, time] : seconds) json["seconds"][stage] = time;

@@ -47,6 +47,12 @@ std::string FitReport::full() const {
     line("deviation", fmt::format("largest {:.6g} at sample {} ({}), {}", deviation.maximum,
                                   deviation.worst_sample, to_string(deviation.kind),
                                   percentage(deviation.maximum, data_size)));
+    if (tolerance > 0) {
+        line("tolerance", fmt::format("{:.6g}: {}", tolerance, verdict));
+        std::string counts;
+        for (const auto& [stage, count] : stages) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", stage, count);
+        if (!counts.empty()) line("control", counts);
+    }
     line("method", method_reason.empty() ? method : fmt::format("{} ({})", method, method_reason));
     if (method != "direct") {
         std::string chosen;
@@ -64,10 +70,10 @@ std::string FitReport::full() const {
     if (inflections >= 0)
         line("shape",
              fmt::format("{} inflections in the control polygon, as at the start", inflections));
-    std::string stages;
+    std::string times;
     for (const auto& [stage, time] : seconds)
-        stages += fmt::format("{}{} {:.2g}", stages.empty() ? "" : ", ", stage, time);
-    line("seconds", fmt::format("{:.3g} ({})", total_seconds(), stages));
+        times += fmt::format("{}{} {:.2g}", times.empty() ? "" : ", ", stage, time);
+    line("seconds", fmt::format("{:.3g} ({})", total_seconds(), times));
     for (const std::string& note : notes) line("note", note);
     return text;
 }

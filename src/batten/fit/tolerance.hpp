@@ -1,0 +1,22 @@
+#pragma once
+
+#include <batten/fit/fit.hpp>
+
+namespace batten {
+
+/// Fits a curve (open or closed) to a sequence, or a surface or volume to a grid, with as few
+/// control points as it can so that every sample is within its tolerance: for curves of a point of
+/// the curve that also keeps the samples' order, for grids of the point at its own parameters (for
+/// heights the height difference).
+///
+/// Not reaching the tolerance is no error: the report's termination is tolerance_not_met, the
+/// verdict says why, and the spline is the best smooth one found. More than nine tenths of the
+/// samples are never used as control points. Throws InvalidInput for a tolerance that is not
+/// positive, or for a cloud.
+FitResult fit_to_tolerance(const Samples& samples, const FitOptions& options);
+
+/// Standard deviation of the noise of a sequence, from third differences: of the whole vector, all
+/// coordinates together. Overestimates where the sampling is coarse.
+double noise_level(const Points& sequence);
+
+} // namespace batten

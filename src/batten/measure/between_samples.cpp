@@ -1,0 +1,83 @@
+#include <batten/measure/between_samples.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace batten {
+
+namespace {
+
+/// Height of the arc over the chord b c on the circle through a, b, c (a beside b).
+double sagitta(std::span<const double> a, std::span<const double> b, std::span<const double> c) {
+    const double ab = distance(a, b);
+    const double bc = distance(b, c);
+    const double ca = distance(c, a);
+    const double s = (ab + bc + ca) / 2;
+    const double area = std::sqrt(std::max(0.0, s * (s - ab) * (s - bc) * (s - ca)));
+    if (!(area > 0)) return 0;
+    const double radius = ab * bc * ca / (4 * area);
+    return radius - std::sqrt(std::max(0.0, radius * radius - bc * bc / 4));
+}
+
+double off_segment(std::span<const double> p, std::span<const double> a,
+                   std::span<const double> b) {
+    double along = 0;
+    double length = 0;
+    for (std::size_t d = 0; d < p.size(); ++d) {
+        along += (p[d] - a[d]) * (b[d] - a[d]);
+        length += (b[d] - a[d]) * (b[d] - a[d]);
+    }
+    const double part = length > 0 ? std::clamp(along / length, 0.0, 1.0) : 0;
+    double square = 0;
+    for (std::size_t d = 0; d < p.size(); ++d) {
+        const double gap = p[d] - a[d] - part * (b[d] - a[d]);
+        square += gap * gap;
+    }
+    return std::sqrt(square);
+}
+
+} // namespace
+
+BetweenSamples check_between(const Spline& curve, const Points& q,
+                             const std::vector<double>& parameters,
+                             const std::vector<double>& tolerance) {
+    constexpr int steps = 5;
+    const bool closed = curve.axis(0).closed();
+    const Index m = q.size();
+    PointSet at((closed ? m : m - 1) * steps + 1, 1);
+    for (Index i = 0; i + 1 < at.size(); ++i) {
+        const Index k = i / steps;
+        const double from = parameters[static_cast<std::size_t>(k)];
+        const double to = k + 1 < m ? parameters[static_cast<std::size_t>(k + 1)]
+                                    : parameters[0] + curve.axis(0).length();
+        at(i, 0) = from + (to - from) * static_cast<double>(i % steps) / steps;
+    }
+    at(at.size() - 1, 0) = closed ? parameters[0] + curve.axis(0).length() : parameters.back();
+    const PointSet points = evaluate(curve, at);
+    BetweenSamples result;
+    for (Index i = 0; i * steps + 1 < at.size(); ++i) {
+        const Index j = (i + 1) % m;
+        const double t = std::max(tolerance[static_cast<std::size_t>(i)],
+                                  tolerance[static_cast<std::size_t>(j)]);
+        double arc = 0;
+        if (closed || i > 0) arc = std::max(arc, sagitta(q[(i + m - 1) % m], q[i], q[j]));
+        if (closed || i + 2 < m) arc = std::max(arc, sagitta(q[(j + 1) % m], q[j], q[i]));
+        const double allowed = std::max(2 * t, arc + t);
+        double stray = 0;
+        double length = 0;
+        for (Index k = 0; k < steps; ++k) {
+            stray = std::max(stray, off_segment(points[i * steps + k], q[i], q[j]));
+            length += distance(points[i * steps + k], points[i * steps + k + 1]);
+        }
+        const double excess =
+            std::max(stray / allowed, length / (1.2 * distance(q[i], q[j]) + 4 * t + 2 * arc));
+        if (excess > result.excess) {
+            result.excess = excess;
+            result.worst_sample = i;
+        }
+    }
+    result.good = result.excess <= 1;
+    return result;
+}
+
+} // namespace batten
