@@ -233,6 +233,7 @@ std::vector<std::size_t> by_significance(const CurveTask& task, const CurveTrial
 void thin_in_batches(const CurveTask& task, CurveTrial& trial) {
     for (std::size_t batch = interior_knots(trial.knots).size() / 4; batch > 1;) {
         const std::vector<double> interior = interior_knots(trial.knots);
+        if (interior.empty()) return;
         const std::vector<std::size_t> order = by_significance(task, trial, interior);
         std::vector<bool> out(interior.size(), false);
         for (std::size_t k = 0; k < std::min(batch, order.size()); ++k) out[order[k]] = true;
