@@ -318,8 +318,7 @@ void calm(const CurveTask& task, CurveTrial& trial, Index most) {
 
 } // namespace
 
-CurveWithin few_knots(const CurveTask& given, Index most) {
-    CurveTask task = given;
+CurveWithin refined(const CurveTask& task, Index most) {
     constexpr int most_rounds = 60;
     CurveWithin result;
     CurveTrial& trial = result.trial;
@@ -344,16 +343,20 @@ CurveWithin few_knots(const CurveTask& given, Index most) {
     result.met = trial.worst <= 1;
     if (result.met) calm(task, trial, most);
     result.stages.emplace_back("refined", trial.knots.free_count());
-    if (!result.met) return result;
+    return result;
+}
+
+void thin_out(const CurveTask& given, CurveWithin& fit) {
+    CurveTask task = given;
+    CurveTrial& trial = fit.trial;
     task.between = std::max(
         1.0, between(task,
                      trial)); // where the samples themselves go back and forth no curve is within 1
     spread_out(task, trial);
-    result.stages.emplace_back("spread", trial.knots.free_count());
+    fit.stages.emplace_back("spread", trial.knots.free_count());
     thin_in_batches(task, trial);
     thin_one_by_one(task, trial);
-    result.stages.emplace_back("thinned", trial.knots.free_count());
-    return result;
+    fit.stages.emplace_back("thinned", trial.knots.free_count());
 }
 
 } // namespace batten

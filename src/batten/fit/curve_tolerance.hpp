@@ -15,9 +15,13 @@ struct CurveWithin {
     std::vector<std::pair<std::string, Index>> stages;
 };
 
-/// The search for few knots: refine where the error is until every sample is within tolerance, then
-/// take out what is not needed. `most_control_points`: not more than that. Bounded in rounds and
-/// trials.
-CurveWithin few_knots(const CurveTask& task, Index most_control_points);
+/// First half of the search for few knots: refines where the error is until every sample is within
+/// tolerance and the curve does nothing odd between them. `most_control_points`: not more than
+/// that. Bounded in rounds.
+CurveWithin refined(const CurveTask& task, Index most_control_points);
+
+/// Second half: spreads fewer knots anew, then takes out those that are not needed, batch by batch
+/// and one by one. Bounded in trials.
+void thin_out(const CurveTask& task, CurveWithin& fit);
 
 } // namespace batten

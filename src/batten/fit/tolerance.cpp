@@ -60,19 +60,27 @@ Samples without_seam(const Samples& samples, Closure closure) {
     return result;
 }
 
-/// The better of the fits without corners and with them.
-CurveWithin fit_with_corners(CurveTask task, const ToleranceOptions& options, Index most) {
+/// Refines without corners and with them, and thins out what took fewer control points.
+CurveWithin few_knots(CurveTask task, const ToleranceOptions& options, Index most) {
     if (options.corners == Corners::given) task.corners = options.corner_samples;
-    CurveWithin best = few_knots(task, most);
-    if (options.corners != Corners::automatic || task.closure == Closure::closed) return best;
-    task.corners = find_corners(task.samples.points);
-    if (task.corners.empty()) return best;
-    CurveWithin other = few_knots(task, most);
-    const auto count = [](const CurveWithin& fit) { return fit.trial.knots.free_count(); };
-    const bool better = other.met != best.met ? other.met
-                        : other.met           ? count(other) < count(best)
-                                              : other.trial.worst < best.trial.worst;
-    return better ? other : best;
+    CurveWithin best = refined(task, most);
+    if (options.corners == Corners::automatic && task.closure == Closure::open) {
+        CurveTask cornered = task;
+        cornered.corners = find_corners(task.samples.points);
+        if (!cornered.corners.empty()) {
+            CurveWithin other = refined(cornered, most);
+            const auto count = [](const CurveWithin& fit) { return fit.trial.knots.free_count(); };
+            const bool better = other.met != best.met ? other.met
+                                : other.met           ? count(other) < count(best)
+                                                      : other.trial.worst < best.trial.worst;
+            if (better) {
+                best = std::move(other);
+                task.corners = std::move(cornered.corners);
+            }
+        }
+    }
+    if (best.met) thin_out(task, best);
+    return best;
 }
 
 std::string not_met_words(double noise, double tolerance, Index most, bool limit_stated) {
@@ -93,7 +101,10 @@ std::string not_met_words(double noise, double tolerance, Index most, bool limit
 CurveWithin smooth_fit(CurveTask task, double noise, Index most) {
     const double m = static_cast<double>(task.samples.size());
     for (double& t : task.tolerance) t = std::max(t, noise * (1 + std::sqrt(2 * std::log(m))));
-    return few_knots(task, most);
+    CurveWithin smooth = refined(task, most);
+    if (smooth.met && task.samples.size() <= 5000)
+        thin_out(task, smooth); // a thousand more samples per knot: nothing to gain
+    return smooth;
 }
 
 FitResult curve_within(const Samples& given, const FitOptions& options,
@@ -134,7 +145,7 @@ FitResult curve_within(const Samples& given, const FitOptions& options,
     // on many samples third differences are noise alone: then no search is needed to know
     const bool hopeless = samples.size() > 5000 && noise > smallest;
     CurveWithin found =
-        hopeless ? smooth_fit(task, noise, most) : fit_with_corners(task, options.tolerance, most);
+        hopeless ? smooth_fit(task, noise, most) : few_knots(task, options.tolerance, most);
     bool met = found.met && !hopeless;
     if (!met && !hopeless && noise > smallest / 3 &&
         limit == 0) { // the last refinement is a near-interpolation in disguise

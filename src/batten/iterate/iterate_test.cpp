@@ -88,6 +88,16 @@ TEST(Iterate, gamma_inside_the_region_converges_and_outside_would_not) {
     EXPECT_NE(message_of<InvalidInput>([&] { outside.start(control); }), "");
 }
 
+TEST(Iterate, mlspia_converges_from_any_lambda) {
+    const auto system = rose_system(30);
+    const PointSet direct = solve_direct(*system);
+    Mlspia method(*system);
+    method.set_first_moves(random_points(30, 2, 77)); // A^T Lambda^0 of an arbitrary Lambda^0
+    PointSet control = random_points(30, 2, 78);
+    EXPECT_EQ(iterate(method, control, {.relative_gradient = 1e-12}).termination, Termination::converged);
+    EXPECT_LT(largest_difference(control, direct), 1e-10);
+}
+
 TEST(Iterate, an_observer_sees_every_iteration_and_can_stop) {
     const auto system = rose_system(30);
     PointSet control(30, 2);

@@ -33,6 +33,24 @@ TEST(Limits, keep_every_turn_for_any_moves) {
     }
 }
 
+TEST(Limits, rays_hold_only_on_the_neighbours_side) {
+    // the middle point moves down across the line through its neighbours, far outside the stretch between them
+    const PointSet polygon({0, 0, 1, 0, 5, 1, 2, 0.1, 3, 0}, 2);
+    PointSet moves(5, 2);
+    moves(2, 1) = -3;
+    PointSet lines = moves;
+    keep_inflections(polygon, lines, Closure::open, 0.8, Barrier::lines);
+    EXPECT_GT(lines(2, 1), -3);
+    const PointSet far({0, 0, 1, 0, -5, 1, 2, 0, 3, 0}, 2); // meets the line through (1, 0) and (2, 0) behind both
+    PointSet whole(5, 2);
+    whole(2, 1) = -3;
+    PointSet ray = whole;
+    keep_inflections(far, whole, Closure::open, 0.8, Barrier::lines);
+    keep_inflections(far, ray, Closure::open, 0.8, Barrier::rays);
+    EXPECT_DOUBLE_EQ(whole(2, 1), -0.8); // 0.8 of the way to the line
+    EXPECT_LE(ray(2, 1), whole(2, 1));   // a ray holds no more than its line
+}
+
 TEST(Limits, leave_harmless_moves_alone) {
     const PointSet polygon({0, 0, 1, 1, 2, 1, 3, 0}, 2);
     const PointSet small({0.01, 0, 0, 0.01, 0, 0.01, -0.01, 0}, 2);

@@ -104,11 +104,6 @@ void add_span_moments(const SpanSamples& samples, int degree, double middle, dou
     for (Index first = 0; first < samples.count; first += block) {
         const Index count = std::min(block, samples.count - first);
         const Index padded = (count + lanes - 1) / lanes * lanes;
-        const auto ahead = samples.parameter + first +
-                           4 * block; // past a span's end, too: the next span's samples follow
-        const auto ahead_points = samples.point + (first + 4 * block) * samples.dim;
-        for (Index j = 0; j < block; j += lanes) __builtin_prefetch(ahead + j);
-        for (Index j = 0; j < block * samples.dim; j += lanes) __builtin_prefetch(ahead_points + j);
         for (Index j = 0; j < count; ++j)
             planes.s[j] = (samples.parameter[first + j] - middle) * scale;
         if (samples.weight != nullptr)
