@@ -13,6 +13,19 @@ namespace batten {
 
 namespace {
 
+/// Weights to start from: least squares in parts of each sample's tolerance, times the caller's
+/// weights.
+std::vector<double> first_weights(const CurveTask& task) {
+    const double tightest = *std::min_element(task.tolerance.begin(), task.tolerance.end());
+    std::vector<double> weights;
+    for (std::size_t i = 0; i < task.tolerance.size(); ++i) {
+        const double part = tightest / task.tolerance[i];
+        weights.push_back(part * part *
+                          (task.samples.weights.empty() ? 1.0 : task.samples.weights[i]));
+    }
+    return weights;
+}
+
 /// Interior knots with their multiplicities: of a closed axis without the seam's.
 std::vector<double> interior_knots(const KnotVector& knots) {
     const auto all = knots.knots();
@@ -115,7 +128,7 @@ bool without(const CurveTask& task, CurveTrial& trial, const std::vector<double>
              int rounds) {
     CurveTrial attempt = trial;
     attempt.knots = with_interior(task, trial.knots, interior);
-    std::fill(attempt.weights.begin(), attempt.weights.end(), 1.0);
+    attempt.weights = first_weights(task);
     if (undetermined(attempt.knots, attempt.parameters)) return false;
     if (!settle(task, attempt, rounds, KnotShift::allowed)) return false;
     if (between(task, attempt) > task.between) return false;
@@ -156,6 +169,13 @@ std::vector<double> spread(const CurveTask& task, const CurveTrial& trial, std::
     std::vector<double> jump(breaks.size(), 0);
     for (std::size_t b = 1; b + 1 < breaks.size(); ++b)
         jump[b] = distance(top[b - 1], top[b]) / (breaks[b + 1] - breaks[b - 1]);
+    for (std::size_t b = 1; b + 1 < breaks.size();
+         ++b) { // bends count in parts of the tolerance there
+        const auto at =
+            std::ranges::lower_bound(trial.parameters, breaks[b]) - trial.parameters.begin();
+        jump[b] /=
+            task.tolerance[static_cast<std::size_t>(std::min<Index>(at, task.samples.size() - 1))];
+    }
     jump.front() = jump[std::min<std::size_t>(1, breaks.size() - 1)];
     jump.back() = jump[breaks.size() - 2];
     for (int pass = 0; pass < smoothing; ++pass) {
@@ -307,7 +327,7 @@ void calm(const CurveTask& task, CurveTrial& trial, Index most) {
                     most))
             return;
         attempt.parameters = task.parameters;
-        std::fill(attempt.weights.begin(), attempt.weights.end(), 1.0);
+        attempt.weights = first_weights(task);
         if (!settle(task, attempt, 6, KnotShift::none)) {
             if (!refine(task, attempt, knots_where_the_error_is(task, attempt), most)) return;
             settle(task, attempt, 6, KnotShift::none);
@@ -327,10 +347,10 @@ CurveWithin refined(const CurveTask& task, Index most) {
                          : knots_around(task.degree, with_corners(task, {}),
                                         task.parameters.front(), task.parameters.back());
     trial.parameters = task.parameters;
-    trial.weights.assign(trial.parameters.size(), 1.0);
+    trial.weights = first_weights(task);
     trial.ratio.assign(trial.parameters.size(), 0.0);
     for (int round = 0; round < most_rounds; ++round) {
-        std::fill(trial.weights.begin(), trial.weights.end(), 1.0);
+        trial.weights = first_weights(task);
         const CurveTrial before = trial;
         trial.parameters = task.parameters;
         if (settle(task, trial, 3, KnotShift::none)) break;

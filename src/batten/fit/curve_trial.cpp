@@ -80,7 +80,7 @@ void reweigh(CurveTrial& trial) {
         total += trial.weights[i];
     }
     const double scale = static_cast<double>(trial.weights.size()) / total;
-    for (double& w : trial.weights) w = std::max(1e-4, w * scale);
+    for (double& w : trial.weights) w = std::max(1e-8, w * scale);
 }
 
 /// Shifts knots so that spans with more error get shorter: the spans' lengths follow error^(-1 /

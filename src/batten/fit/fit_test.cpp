@@ -199,6 +199,71 @@ TEST(Threads, do_not_change_a_bit) {
     }
 }
 
+TEST(Tolerance, holds_for_closed_surfaces_volumes_and_clouds) {
+    FitOptions options;
+    options.tolerance.value = 0.01;
+    const FitResult block = fit(generate("bent-block"), options);
+    EXPECT_EQ(block.report.termination, Termination::tolerance_met);
+    EXPECT_LE(block.report.deviation.maximum, 0.01);
+    PointSet uv = random_points(5000, 2, 3);
+    PointSet q(5000, 3);
+    for (Index i = 0; i < 5000; ++i) {
+        q(i, 0) = uv(i, 0);
+        q(i, 1) = uv(i, 1);
+        q(i, 2) = std::sin(3 * uv(i, 0)) * std::cos(2 * uv(i, 1));
+    }
+    options.shape.parameters = Parameters{{}, std::move(uv)};
+    options.tolerance.value = 1e-3;
+    const FitResult cloud = fit(sequence(q), options);
+    EXPECT_EQ(cloud.report.termination, Termination::tolerance_met);
+    EXPECT_LE(cloud.report.deviation.maximum, 1e-3);
+    EXPECT_LE(cloud.spline.control_points().size(), 13 * 13); // 13 even knots a side do it
+    options = {};
+    options.tolerance.value = 0.01;
+    options.shape.closures = {Closure::closed};
+    const FitResult torus = fit(generate("torus"), options);
+    EXPECT_LE(torus.report.deviation.maximum, 0.01);
+    const auto a = torus.spline(std::array{0.0, 0.3});
+    const auto b = torus.spline(std::array{1.0, 0.3});
+    for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(a[d], b[d], 1e-13);
+}
+
+TEST(Tolerance, per_sample_tolerances_are_kept_each) {
+    const Samples rose = generate("rose");
+    FitOptions options;
+    for (Index i = 0; i < rose.size(); ++i)
+        options.tolerance.per_sample.push_back(i < 250 ? 1e-2 : 1e-4);
+    const FitResult result = fit(rose, options);
+    EXPECT_EQ(result.report.termination, Termination::tolerance_met);
+    const auto d = parametric_deviations(result.spline, rose, result.parameters);
+    for (std::size_t i = 0; i < d.size(); ++i)
+        EXPECT_LE(d[i], options.tolerance.per_sample[i] * (1 + 1e-12)) << i;
+    FitOptions fine;
+    fine.tolerance.value = 1e-4;
+    EXPECT_LT(result.report.control_shape[0], fit(rose, fine).report.control_shape[0]);
+    options.tolerance.per_sample[3] = 0;
+    EXPECT_EQ(message_of<InvalidInput>([&] { fit(rose, options); }),
+              "tolerance 3: 0 must be positive and finite");
+    options.tolerance.per_sample = {1};
+    EXPECT_EQ(message_of<InvalidInput>([&] { fit(rose, options); }),
+              "tolerances: 1 given for 501 samples; one per sample is needed");
+}
+
+TEST(Tolerance, data_times_a_thousand_give_the_same_curve_times_a_thousand) {
+    const Samples wing = generate("naca2412");
+    PointSet large(wing.points);
+    for (double& x : large.values()) x *= 1024; // a power of two: no rounding
+    FitOptions options;
+    options.tolerance.value = 1e-3;
+    const FitResult small = fit(wing, options);
+    options.tolerance.value = 1.024;
+    const FitResult big = fit(sequence(large), options);
+    ASSERT_EQ(small.report.control_shape, big.report.control_shape);
+    for (std::size_t k = 0; k < small.spline.control_points().values().size(); ++k)
+        EXPECT_NEAR(big.spline.control_points().values()[k],
+                    1024 * small.spline.control_points().values()[k], 1e-8);
+}
+
 TEST(ClosestPoint, agrees_with_a_dense_search) {
     const FitResult curve = fit(generate("rose"), size({40}));
     const PointSet points = random_points(50, 2, 12);

@@ -1,6 +1,8 @@
 #include <batten/fit/grid_tolerance.hpp>
 
 #include <batten/basis/place_knots.hpp>
+#include <batten/iterate/conjugate_gradients.hpp>
+#include <batten/iterate/iterate.hpp>
 #include <batten/measure/deviation.hpp>
 #include <batten/solve/direct.hpp>
 #include <batten/system/collocation.hpp>
@@ -16,6 +18,20 @@ namespace {
 /// How knots are spread over an axis: the accumulated density at the axis's parameters, from 0
 /// to 1.
 using Spread = std::vector<double>;
+
+/// The parameters along each axis, ascending: a cloud's sorted.
+std::vector<std::vector<double>> ascending(const Parameters& parameters) {
+    if (!parameters.is_scattered()) return parameters.axes;
+    std::vector<std::vector<double>> result(static_cast<std::size_t>(parameters.axis_count()));
+    for (Index i = 0; i < parameters.scattered.size(); ++i)
+        for (std::size_t k = 0; k < result.size(); ++k)
+            result[k].push_back(parameters.scattered(i, static_cast<Index>(k)));
+    for (auto& t : result) {
+        std::ranges::sort(t);
+        t.erase(std::unique(t.begin(), t.end()), t.end());
+    }
+    return result;
+}
 
 /// Density from differences of order p + 1 of the samples along the axis: the largest over all
 /// rows, smoothed, to the power 1 / (p + 1).
@@ -90,21 +106,20 @@ class Search {
           tolerance_(tolerance),
           degree_(degree),
           closures_(closures),
-          spreads_(std::move(spreads)) {}
+          spreads_(std::move(spreads)),
+          ascending_(ascending(parameters)) {}
 
     /// Largest distance over tolerance with n control points per axis.
     double operator()(const std::vector<Index>& n) {
         std::vector<KnotVector> axes;
         for (std::size_t k = 0; k < n.size(); ++k) {
-            axes.push_back(
-                knots_by(spreads_[k], parameters_.axes[k], degree_[k], n[k], closures_[k]));
-            if (undetermined(axes.back(), parameters_.axes[k]))
+            axes.push_back(knots_by(spreads_[k], ascending_[k], degree_[k], n[k], closures_[k]));
+            if (!parameters_.is_scattered() && undetermined(axes.back(), ascending_[k]))
                 return std::numeric_limits<double>::infinity();
         }
         try {
             const auto system = assemble(axes, samples_, parameters_);
-            Spline spline =
-                Spline::from_free(axes, uncentred(solve_direct(*system), system->centre()));
+            Spline spline = Spline::from_free(axes, uncentred(solve(*system), system->centre()));
             const std::vector<double> d = parametric_deviations(spline, samples_, parameters_);
             double worst = 0;
             for (std::size_t i = 0; i < d.size(); ++i)
@@ -125,12 +140,23 @@ class Search {
     bool met = false;
 
   private:
+    /// Directly on a grid; on a cloud by preconditioned conjugate gradients, which hold still what
+    /// no sample reaches.
+    PointSet solve(const NormalSystem& system) const {
+        if (!parameters_.is_scattered()) return solve_direct(system);
+        PointSet control(system.size(), system.dim());
+        ConjugateGradients cg(system, Preconditioner::axes);
+        iterate(cg, control, {.max_iterations = 300, .relative_gradient = 1e-9});
+        return control;
+    }
+
     const Samples& samples_;
     const Parameters& parameters_;
     const std::vector<double>& tolerance_;
     const std::vector<int>& degree_;
     const std::vector<Closure>& closures_;
     std::vector<Spread> spreads_;
+    std::vector<std::vector<double>> ascending_;
 };
 
 Index product(const std::vector<Index>& n) {
@@ -234,12 +260,14 @@ GridWithin few_knots(const Samples& samples, const Parameters& parameters,
                      const std::vector<Closure>& closures, const std::vector<Index>& most) {
     GridWithin best;
     Index fewest = std::numeric_limits<Index>::max();
+    const auto t = ascending(parameters);
     for (bool bent : {false, true}) {
+        if (bent && parameters.is_scattered()) break; // no rows to take differences along
         std::vector<Spread> spreads;
         for (std::size_t k = 0; k < degree.size(); ++k)
             spreads.push_back(bent && closures[k] == Closure::open
-                                  ? bend_spread(samples, parameters.axes[k], k, degree[k])
-                                  : even_spread(parameters.axes[k]));
+                                  ? bend_spread(samples, t[k], k, degree[k])
+                                  : even_spread(t[k]));
         Search search(samples, parameters, tolerance, degree, closures, std::move(spreads));
         std::vector<Index> n;
         for (std::size_t k = 0; k < degree.size(); ++k)

@@ -182,17 +182,38 @@ FitResult curve_within(const Samples& given, const FitOptions& options,
     return result;
 }
 
-FitResult grid_within(const Samples& samples, const FitOptions& options,
-                      const std::vector<double>& tolerance) {
+/// Greatest number of control points along each axis, so that together they are at most `part` of
+/// the samples.
+std::vector<Index> most_per_axis(const Samples& samples, const Parameters& parameters,
+                                 const AxisPlan& plan, double part) {
+    const auto axes = static_cast<double>(plan.degree.size());
+    std::vector<Index> most;
+    for (std::size_t k = 0; k < plan.degree.size(); ++k) {
+        const double along = parameters.is_scattered()
+                                 ? std::pow(static_cast<double>(samples.size()), 1 / axes)
+                                 : static_cast<double>(samples.grid[k]);
+        most.push_back(std::max<Index>(plan.degree[k] + 1,
+                                       static_cast<Index>(std::pow(part, 1 / axes) * along)));
+    }
+    return most;
+}
+
+/// A grid, or a cloud with given parameters.
+FitResult surface_within(const Samples& samples, const FitOptions& options,
+                         const std::vector<double>& tolerance) {
     if (!options.hold.interpolate.empty())
-        throw InvalidInput("tolerance: samples of a grid cannot be interpolated exactly in a fit "
-                           "to a tolerance yet; state --control-points");
+        throw InvalidInput("tolerance: samples of a grid or cloud cannot be interpolated exactly "
+                           "in a fit to a tolerance yet; state --control-points");
     FitResult result;
     FitReport& report = result.report;
     Stopwatch watch;
     ShapeOptions shape = options.shape;
     shape.control_points.clear();
-    for (Index m : samples.grid) shape.control_points.push_back(m);
+    const bool cloud = shape.parameters && shape.parameters->is_scattered();
+    if (cloud)
+        shape.control_points.assign(1, samples.size());
+    else
+        for (Index m : samples.grid) shape.control_points.push_back(m);
     const AxisPlan plan = plan_axes(samples, shape);
     result.parameters = choose_parameters(samples, options.shape, plan);
     report.seconds.emplace_back("parametrize", watch.lap());
@@ -200,12 +221,7 @@ FitResult grid_within(const Samples& samples, const FitOptions& options,
     const double part =
         limit > 0 ? std::min(1.0, static_cast<double>(limit) / static_cast<double>(samples.size()))
                   : most_part;
-    std::vector<Index> most;
-    for (std::size_t k = 0; k < samples.grid.size(); ++k)
-        most.push_back(std::max<Index>(
-            plan.degree[k] + 1,
-            static_cast<Index>(std::pow(part, 1.0 / static_cast<double>(samples.grid.size())) *
-                               static_cast<double>(samples.grid[k]))));
+    const std::vector<Index> most = most_per_axis(samples, result.parameters, plan, part);
     GridWithin found =
         few_knots(samples, result.parameters, tolerance, plan.degree, plan.closures, most);
     if (found.spline.axis_count() == 0)
@@ -243,15 +259,13 @@ FitResult fit_to_tolerance(const Samples& samples, const FitOptions& options) {
                            "state --control-points");
     if (!options.shape.knots.empty())
         throw InvalidInput("tolerance: knots are found by the fit and cannot be given, too");
-    if (options.shape.parameters && options.shape.parameters->is_scattered())
-        throw InvalidInput(
-            "tolerance: clouds are fitted with a stated number of control points only, yet");
     if (options.method.name != "auto")
         throw InvalidInput(fmt::format("tolerance: the method is the search's own, got {}; epia "
                                        "has its own (--stop-deviation)",
                                        options.method.name));
-    return samples.grid.empty() ? curve_within(samples, options, tolerance)
-                                : grid_within(samples, options, tolerance);
+    const bool cloud = options.shape.parameters && options.shape.parameters->is_scattered();
+    return samples.grid.empty() && !cloud ? curve_within(samples, options, tolerance)
+                                          : surface_within(samples, options, tolerance);
 }
 
 } // namespace batten

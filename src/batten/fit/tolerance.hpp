@@ -4,10 +4,10 @@
 
 namespace batten {
 
-/// Fits a curve (open or closed) to a sequence, or a surface or volume to a grid, with as few
-/// control points as it can so that every sample is within its tolerance: for curves of a point of
-/// the curve that also keeps the samples' order, for grids of the point at its own parameters (for
-/// heights the height difference).
+/// Fits a curve (open or closed) to a sequence, or a surface or volume to a grid or a cloud with
+/// given parameters, with as few control points as it can so that every sample is within its
+/// tolerance: for curves of a point of the curve that also keeps the samples' order, for grids of
+/// the point at its own parameters (for heights the height difference).
 ///
 /// Not reaching the tolerance is no error: the report's termination is tolerance_not_met, the
 /// verdict says why, and the spline is the best smooth one found. More than nine tenths of the

@@ -64,6 +64,36 @@ TEST(OnePass, control_points_agree_with_extended_precision) {
     }
 }
 
+TEST(OnePass, a_grids_control_points_agree_with_extended_precision) {
+    const Samples peaks = generate("peaks", {400, 300});
+    const Parameters t = parametrize(peaks, Parametrization::chord, {Closure::open, Closure::open});
+    const std::vector<KnotVector> axes{knots_from_parameters(t.axes[0], 3, 40),
+                                       knots_from_parameters(t.axes[1], 3, 35)};
+    const LongMatrix a = long_collocation(axes[0], t.axes[0]);
+    const LongMatrix b = long_collocation(axes[1], t.axes[1]);
+    const auto system = assemble(axes, peaks, t);
+    const PointSet ours = uncentred(solve_direct(*system), system->centre());
+    for (Index d = 0; d < 3; ++d) {
+        LongMatrix q(400, 300);
+        for (Index i = 0; i < 400; ++i)
+            for (Index j = 0; j < 300; ++j) q(i, j) = peaks.points(i * 300 + j, d);
+        const LongMatrix half = LongMatrix(a.transpose() * a).ldlt().solve(a.transpose() * q);
+        const LongMatrix exact = LongMatrix(b.transpose() * b)
+                                     .ldlt()
+                                     .solve(b.transpose() * half.transpose())
+                                     .transpose();
+        double largest = 0;
+        for (Index i = 0; i < 40; ++i)
+            for (Index j = 0; j < 35; ++j)
+                largest = std::max(
+                    largest, static_cast<double>(std::abs(exact(i, j) - ours(i * 35 + j, d))));
+        EXPECT_LT(
+            largest,
+            1e-11 * static_cast<double>(
+                        exact.cwiseAbs().maxCoeff())); // condition of each axis's A^T A: about 1e3
+    }
+}
+
 TEST(OnePass, moments_stay_accurate_up_to_degree_9) {
     for (int p = 1; p <= max_degree; ++p) {
         const auto t = random_parameters(2000, 3);
