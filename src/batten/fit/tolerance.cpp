@@ -166,15 +166,24 @@ FitResult curve_within(const Samples& given, const FitOptions& options,
     const BetweenSamples between =
         check_between(result.spline, samples.points, found.trial.parameters, tolerance);
     report.between_samples = between.excess;
+    constexpr double wild = 3; // beyond it what happens between the samples is no reading of them
+    const bool is_wild = met && between.excess > wild;
+    if (is_wild) {
+        met = false;
+        report.termination = Termination::tolerance_not_met;
+    }
     const Index n = found.trial.knots.free_count();
     const bool near = static_cast<double>(n) > smooth_part * static_cast<double>(samples.size());
     report.noise_level = near || !met ? noise : 0;
-    report.verdict = met ? "met" : not_met_words(noise, smallest, most, limit > 0);
+    report.verdict = met ? "met"
+                     : is_wild
+                         ? "not met: every sample is within, but the curve is wild between some"
+                         : not_met_words(noise, smallest, most, limit > 0);
     if (met && near)
         report.verdict += fmt::format(", but it nearly interpolates: {} control points for {} "
                                       "samples; noise level seen in them {:.3g}",
                                       n, samples.size(), noise);
-    if (!between.good)
+    if (!between.good && (met || is_wild))
         report.verdict += fmt::format(
             "; between samples {} and the next the curve strays {:.2g} times as far as allowed",
             between.worst_sample, between.excess);
