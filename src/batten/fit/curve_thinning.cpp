@@ -1,9 +1,6 @@
 #include <batten/fit/curve_tolerance.hpp>
 
-#include <batten/basis/place_knots.hpp>
 #include <batten/fit/curve_knots.hpp>
-#include <batten/fit/curve_pieces.hpp>
-#include <batten/measure/between_samples.hpp>
 #include <batten/system/collocation.hpp>
 
 #include <algorithm>
@@ -18,7 +15,6 @@ namespace {
 /// (degree 3) of its spans.
 std::vector<double> knot_significance(const CurveTask& task, const CurveTrial& trial,
                                       const std::vector<double>& interior) {
-    const CurvePieces pieces(trial.knots, trial.control);
     std::vector<double> result;
     const KnotVector& k = trial.knots;
     const Spline spline = spline_of(trial);

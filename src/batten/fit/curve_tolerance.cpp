@@ -2,7 +2,6 @@
 
 #include <batten/basis/place_knots.hpp>
 #include <batten/fit/curve_knots.hpp>
-#include <batten/fit/curve_pieces.hpp>
 #include <batten/measure/between_samples.hpp>
 #include <batten/system/collocation.hpp>
 
@@ -41,8 +40,7 @@ std::vector<double> knots_where_the_error_is(const CurveTask& task, const CurveT
         if (worst <= least) continue;
         const double length = breaks[b + 1] - breaks[b];
         double at = moment / mass;
-        // far out over a short span is a corner: the knot goes to it, and again until it has full
-        // multiplicity
+        // few samples and one far out: the knot goes next to that one
         if (count <= static_cast<std::size_t>(task.degree) + 1 && worst > 4) at = worst_at;
         at = std::clamp(at, breaks[b] + 0.05 * length, breaks[b + 1] - 0.05 * length);
         fresh.push_back(at);

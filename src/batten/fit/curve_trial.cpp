@@ -122,6 +122,7 @@ bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shif
     CurveTrial best;
     best.worst = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds; ++round) {
+        if (task.cancelled && task.cancelled()) throw Cancelled("the fit was cancelled");
         try {
             trial.control = solve(task, trial);
         } catch (

@@ -4,6 +4,7 @@
 #include <batten/spline/spline.hpp>
 #include <batten/system/constraints.hpp>
 
+#include <functional>
 #include <vector>
 
 namespace batten {
@@ -24,6 +25,8 @@ struct CurveTask {
     /// Greatest part of what is allowed between samples (measure/between_samples.hpp) that a
     /// thinner curve may use.
     double between = 1;
+    /// Asked every round; true ends the search with Cancelled.
+    std::function<bool()> cancelled{};
 };
 
 /// A curve on the way: knots, parameters and weights of the samples, and how far it is from its

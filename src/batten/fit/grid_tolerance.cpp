@@ -100,17 +100,20 @@ class Search {
   public:
     Search(const Samples& samples, const Parameters& parameters,
            const std::vector<double>& tolerance, const std::vector<int>& degree,
-           const std::vector<Closure>& closures, std::vector<Spread> spreads)
+           const std::vector<Closure>& closures, std::vector<Spread> spreads,
+           const std::function<bool()>& cancelled)
         : samples_(samples),
           parameters_(parameters),
           tolerance_(tolerance),
           degree_(degree),
           closures_(closures),
           spreads_(std::move(spreads)),
-          ascending_(ascending(parameters)) {}
+          ascending_(ascending(parameters)),
+          cancelled_(cancelled) {}
 
     /// Largest distance over tolerance with n control points per axis.
     double operator()(const std::vector<Index>& n) {
+        if (cancelled_ && cancelled_()) throw Cancelled("the fit was cancelled");
         std::vector<KnotVector> axes;
         for (std::size_t k = 0; k < n.size(); ++k) {
             axes.push_back(knots_by(spreads_[k], ascending_[k], degree_[k], n[k], closures_[k]));
@@ -157,6 +160,7 @@ class Search {
     const std::vector<Closure>& closures_;
     std::vector<Spread> spreads_;
     std::vector<std::vector<double>> ascending_;
+    const std::function<bool()>& cancelled_;
 };
 
 Index product(const std::vector<Index>& n) {
@@ -257,7 +261,8 @@ void rebalance(Search& search, std::vector<Index>& n, const std::vector<int>& de
 
 GridWithin few_knots(const Samples& samples, const Parameters& parameters,
                      const std::vector<double>& tolerance, const std::vector<int>& degree,
-                     const std::vector<Closure>& closures, const std::vector<Index>& most) {
+                     const std::vector<Closure>& closures, const std::vector<Index>& most,
+                     const std::function<bool()>& cancelled) {
     GridWithin best;
     Index fewest = std::numeric_limits<Index>::max();
     const auto t = ascending(parameters);
@@ -268,7 +273,8 @@ GridWithin few_knots(const Samples& samples, const Parameters& parameters,
             spreads.push_back(bent && closures[k] == Closure::open
                                   ? bend_spread(samples, t[k], k, degree[k])
                                   : even_spread(t[k]));
-        Search search(samples, parameters, tolerance, degree, closures, std::move(spreads));
+        Search search(samples, parameters, tolerance, degree, closures, std::move(spreads),
+                      cancelled);
         std::vector<Index> n;
         for (std::size_t k = 0; k < degree.size(); ++k)
             n.push_back(std::min(

@@ -3,6 +3,7 @@
 #include <batten/fit/options.hpp>
 #include <batten/spline/spline.hpp>
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ struct GridWithin {
 /// control points per axis.
 GridWithin few_knots(const Samples& samples, const Parameters& parameters,
                      const std::vector<double>& tolerance, const std::vector<int>& degree,
-                     const std::vector<Closure>& closures, const std::vector<Index>& most);
+                     const std::vector<Closure>& closures, const std::vector<Index>& most,
+                     const std::function<bool()>& cancelled = {});
 
 } // namespace batten

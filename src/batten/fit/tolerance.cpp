@@ -136,6 +136,7 @@ FitResult curve_within(const Samples& given, const FitOptions& options,
                           ? shape.parameters->axes[0]
                           : parametrize_sequence(samples.points, shape.parametrization, closure);
     report.seconds.emplace_back("parametrize", watch.lap());
+    task.cancelled = options.cancelled;
     const Index limit = options.tolerance.max_control_points;
     const Index most = std::max<Index>(
         task.degree + 1,
@@ -153,6 +154,9 @@ FitResult curve_within(const Samples& given, const FitOptions& options,
             task, noise, static_cast<Index>(smooth_part * static_cast<double>(samples.size())));
         if (smooth.met) found = std::move(smooth);
     }
+    if (found.trial.control.empty())
+        throw SolverError("no number of control points gives a solvable system: the samples' "
+                          "parameters coincide");
     report.stages = found.stages;
     report.seconds.emplace_back("search", watch.lap());
     result.spline = spline_of(found.trial);
@@ -231,8 +235,8 @@ FitResult surface_within(const Samples& samples, const FitOptions& options,
         limit > 0 ? std::min(1.0, static_cast<double>(limit) / static_cast<double>(samples.size()))
                   : most_part;
     const std::vector<Index> most = most_per_axis(samples, result.parameters, plan, part);
-    GridWithin found =
-        few_knots(samples, result.parameters, tolerance, plan.degree, plan.closures, most);
+    GridWithin found = few_knots(samples, result.parameters, tolerance, plan.degree, plan.closures,
+                                 most, options.cancelled);
     if (found.spline.axis_count() == 0)
         throw SolverError(
             "no number of control points gives a solvable system: the grid's parameters coincide");
