@@ -59,7 +59,7 @@ Ritz ritz(const Vector& alpha, const Vector& beta, double tolerance, SpectrumEnd
     };
     const bool low = ends == SpectrumEnds::largest ||
                      (k > 2 && error(0, 1) <= 0.1 * tolerance * std::abs(value[0]));
-    const bool settled = k > 2 && low && error(k - 1, k - 2) <= 0.1 * tolerance * value[k - 1];
+    const bool settled = k > 2 && low && error(k - 1, k - 2) <= tolerance * value[k - 1];
     return {{value[k - 1], value[0]}, settled};
 }
 
