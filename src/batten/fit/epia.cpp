@@ -96,11 +96,12 @@ class Incremental {
     Incremental(const Samples& samples, const Parameters& parameters, const FitOptions& options,
                 const EpiaSettings& settings, const std::vector<Index>& alone)
         : samples_(samples), parameters_(parameters), options_(options), settings_(settings) {
-        const AxisPlan plan = degrees();
+        const std::vector<int> degree =
+            degrees_per_axis(options.shape, static_cast<Index>(parameters.axes.size()));
         for (std::size_t k = 0; k < parameters.axes.size(); ++k) {
             std::vector<double> curvature = axis_curvature(samples, k, settings.smoothing);
             std::vector<Index> dominant = dominant_indices(curvature);
-            axes_.emplace_back(plan.degree[k], parameters.axes[k], std::move(curvature),
+            axes_.emplace_back(degree[k], parameters.axes[k], std::move(curvature),
                                std::move(dominant), alone);
         }
     }
@@ -131,17 +132,6 @@ class Incremental {
     }
 
   private:
-    AxisPlan degrees() const {
-        ShapeOptions shape = options_.shape;
-        shape.parameters.reset();
-        shape.knots.clear();
-        shape.control_points.assign(1, 1000000000); // any: the count grows with the fit
-        AxisPlan plan;
-        for (std::size_t k = 0; k < parameters_.axes.size(); ++k)
-            plan.degree.push_back(shape.degree.size() == 1 ? shape.degree[0] : shape.degree.at(k));
-        return plan;
-    }
-
     std::vector<KnotVector> knots() const {
         std::vector<KnotVector> result;
         for (const EpiaAxis& axis : axes_) result.push_back(axis.knots());

@@ -42,10 +42,14 @@ KnotVector given_knots(const std::vector<double>& knots, int degree, Closure clo
 
 } // namespace
 
+std::vector<int> degrees_per_axis(const ShapeOptions& options, Index axes) {
+    return per_axis(options.degree, axes, "degree");
+}
+
 AxisPlan plan_axes(const Samples& samples, const ShapeOptions& options) {
     const Index axes = options.parameters ? options.parameters->axis_count() : samples.axis_count();
     AxisPlan plan;
-    plan.degree = per_axis(options.degree, axes, "degree");
+    plan.degree = degrees_per_axis(options, axes);
     plan.closures = per_axis(options.closures, axes, "closed");
     if (!options.knots.empty()) {
         if (static_cast<Index>(options.knots.size()) != axes)

@@ -15,6 +15,9 @@ struct AxisPlan {
 /// Throws InvalidInput when the options' lists do not fit the number of axes, or no size is given.
 AxisPlan plan_axes(const Samples& samples, const ShapeOptions& options);
 
+/// The options' degree for each of `axes` axes; throws InvalidInput when their number does not fit.
+std::vector<int> degrees_per_axis(const ShapeOptions& options, Index axes);
+
 /// The parameters that the options give or rule. Closed axes have period 1.
 Parameters choose_parameters(const Samples& samples, const ShapeOptions& options,
                              const AxisPlan& plan);

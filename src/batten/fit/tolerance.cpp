@@ -112,14 +112,12 @@ FitResult curve_within(const Samples& given, const FitOptions& options,
     FitResult result;
     FitReport& report = result.report;
     Stopwatch watch;
-    ShapeOptions shape = options.shape;
-    shape.control_points = {
-        given.size()}; // only so that the lists' lengths are checked; found below
-    const Closure closure = shape.closures.at(0);
-    const Samples samples = without_seam(given, closure);
-    tolerance.resize(static_cast<std::size_t>(samples.size()));
+    const ShapeOptions& shape = options.shape;
     if (shape.degree.size() != 1 || shape.closures.size() != 1)
         throw InvalidInput("degree, closed: one value is needed for a curve");
+    const Closure closure = shape.closures[0];
+    const Samples samples = without_seam(given, closure);
+    tolerance.resize(static_cast<std::size_t>(samples.size()));
     CurveTask task{.samples = samples,
                    .tolerance = tolerance,
                    .degree = shape.degree[0],
