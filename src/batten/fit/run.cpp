@@ -134,11 +134,11 @@ PointSet least_squares(const std::vector<KnotVector>& axes, const Samples& sampl
     if (clspia) {
         const Settings& s = options.method.settings;
         check_settings(method_entry("clspia"), s);
-        local.check_independent(system->size());
+        const Constraints exact = with_best_lengths(*system, local.independent(system->size()));
         const ClspiaSettings settings{setting(s, "mu", 0), setting(s, "mu_1", 0),
                                       setting(s, "inner_tolerance", 0),
                                       setting(s, "eigenvalue_tolerance", 1e-2)};
-        method = std::make_unique<Clspia>(*system, local, settings);
+        method = std::make_unique<Clspia>(*system, exact, settings);
     } else {
         method = make_method(report.method, *system, options.method.settings);
     }

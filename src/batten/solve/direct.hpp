@@ -11,7 +11,11 @@ PointSet solve_direct(const NormalSystem& system);
 
 /// The same under constraints C P = d (relative to the centre), from the saddle-point system
 /// [ChangMaDeng2023, eq. 1]: a solve per constraint and a small dense system for the multipliers.
-/// Throws as above, and InvalidInput as Constraints::check_independent does.
+/// Directions get the lengths that leave the least error. Throws as above, and InvalidInput as
+/// Constraints::independent does.
 PointSet solve_direct(const NormalSystem& system, const Constraints& constraints);
+
+/// Independent constraints with their directions' lengths as the fit above chooses them.
+Constraints with_best_lengths(const NormalSystem& system, const Constraints& constraints);
 
 } // namespace batten

@@ -1,6 +1,7 @@
 #include <batten/system/constraints.hpp>
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -28,8 +29,36 @@ void Constraints::add(const std::vector<KnotVector>& axes, std::span<const doubl
     }
     std::erase_if(row, [](const Entry& entry) { return entry.value == 0; });
     const bool position = std::ranges::all_of(orders, [](int order) { return order == 0; });
+    add_row(std::move(row), position ? 1 : 0, value, std::move(name));
+}
+
+void Constraints::add_direction(const std::vector<KnotVector>& axes,
+                                std::span<const double> parameter, std::span<const int> orders,
+                                std::span<const double> direction, std::string name) {
+    directions_.push_back(size());
+    double length = 0;
+    for (double x : direction) length += x * x;
+    std::vector<double> unit(direction.begin(), direction.end());
+    for (double& x : unit) x /= std::sqrt(length);
+    add(axes, parameter, orders, unit, std::move(name));
+}
+
+void Constraints::fix(Index control, std::span<const double> value, std::string name) {
+    add_row({{control, 1.0}}, 1, value, std::move(name));
+}
+
+Constraints Constraints::with_lengths(std::span<const double> lengths) const {
+    Constraints result = *this;
+    result.directions_.clear();
+    for (std::size_t k = 0; k < directions_.size(); ++k)
+        for (double& x : result.values_[directions_[k]]) x *= lengths[k];
+    return result;
+}
+
+void Constraints::add_row(std::vector<Entry> row, double sum, std::span<const double> value,
+                          std::string name) {
     rows_.push_back(std::move(row));
-    sums_.push_back(position ? 1 : 0);
+    sums_.push_back(sum);
     names_.push_back(std::move(name));
     values_.values().insert(values_.values().end(), value.begin(), value.end());
     values_ = PointSet(std::move(values_.values()), static_cast<Index>(value.size()));
@@ -61,47 +90,71 @@ Constraints Constraints::centred(const std::vector<double>& centre) const {
     return result;
 }
 
-void Constraints::check_independent(Index controls) const {
-    if (size() > controls)
-        throw InvalidInput(fmt::format(
-            "{} constraints on {} control points: at most as many are possible", size(), controls));
+Constraints Constraints::independent(Index controls) const {
+    Constraints result(values_.dim());
     // rows orthonormalised one by one; a row that vanishes depends on those before it
-    std::vector<Eigen::VectorXd> basis;
-    std::vector<Eigen::VectorXd> combination; // each basis vector in terms of the rows
+    using Vector = Eigen::SparseVector<double>;
+    std::vector<Vector> basis;
+    std::vector<Vector> combination; // each basis vector in terms of the rows
     for (Index k = 0; k < size(); ++k) {
-        Eigen::VectorXd row = Eigen::VectorXd::Zero(controls);
-        Eigen::VectorXd how = Eigen::VectorXd::Zero(size());
-        for (const Entry& entry : rows_[static_cast<std::size_t>(k)])
-            row[entry.control] += entry.value;
-        how[k] = 1;
+        Vector row(controls);
+        Vector how(size());
+        const auto at = static_cast<std::size_t>(k);
+        for (const Entry& entry : rows_[at]) row.coeffRef(entry.control) += entry.value;
+        how.coeffRef(k) = 1;
         const double length = row.norm();
         for (int pass = 0; pass < 2; ++pass)
             for (std::size_t b = 0; b < basis.size(); ++b) {
                 const double part = basis[b].dot(row);
-                row -= part * basis[b];
-                how -= part * combination[b];
+                if (part == 0) continue;
+                row = (row - part * basis[b]).pruned();
+                how = how - part * combination[b];
             }
-        if (row.norm() > 1e-10 * length) {
-            combination.push_back(how / row.norm());
-            basis.push_back(row / row.norm());
+        const double rest = row.norm();
+        if (rest > 1e-10 * length) {
+            combination.push_back(how / rest);
+            basis.push_back(row / rest);
+            if (std::ranges::binary_search(directions_, k))
+                result.directions_.push_back(result.size());
+            result.add_row(rows_[at], sums_[at], values_[k], names_[at]);
             continue;
         }
-        std::vector<std::string> involved;
-        Eigen::RowVectorXd clash = Eigen::RowVectorXd::Zero(values_.dim());
-        double scale = 0;
-        for (Index j = 0; j <= k; ++j) {
-            if (std::abs(how[j]) <= 1e-8 * how.cwiseAbs().maxCoeff()) continue;
-            involved.push_back(names_[static_cast<std::size_t>(j)]);
-            for (Index d = 0; d < values_.dim(); ++d) {
-                clash[d] += how[j] * values_(j, d);
-                scale = std::max(scale, std::abs(how[j] * values_(j, d)));
-            }
-        }
-        throw InvalidInput(fmt::format("constraints {}: {}",
-                                       clash.norm() > 1e-9 * scale ? "contradict each other"
-                                                                   : "depend on each other",
-                                       fmt::join(involved, ", ")));
+        const Eigen::VectorXd dense(how);
+        if (const std::string clash =
+                clash_words({dense.data(), static_cast<std::size_t>(size())}, k);
+            !clash.empty())
+            throw InvalidInput(
+                size() > controls
+                    ? fmt::format(
+                          "{} constraints on {} control points: at most as many are possible",
+                          size(), controls)
+                    : clash);
     }
+    return result;
+}
+
+std::string Constraints::clash_words(std::span<const double> how, Index last) const {
+    std::vector<std::string> involved;
+    std::vector<double> clash(static_cast<std::size_t>(values_.dim()));
+    double gap = 0;
+    double scale = 0;
+    double largest = 0;
+    bool free_length = false;
+    for (double part : how) largest = std::max(largest, std::abs(part));
+    for (Index j = 0; j <= last; ++j) {
+        const double part = how[static_cast<std::size_t>(j)];
+        if (std::abs(part) <= 1e-8 * largest) continue;
+        involved.push_back(names_[static_cast<std::size_t>(j)]);
+        free_length = free_length || std::ranges::binary_search(directions_, j);
+        for (std::size_t d = 0; d < clash.size(); ++d) {
+            const double value = part * values_(j, static_cast<Index>(d));
+            clash[d] += value;
+            scale = std::max(scale, std::abs(value));
+        }
+    }
+    for (double x : clash) gap = std::max(gap, std::abs(x));
+    if (gap <= 1e-9 * scale && !free_length) return {};
+    return fmt::format("constraints contradict each other: {}", fmt::join(involved, ", "));
 }
 
 std::vector<double> parameter_of(const Parameters& parameters, Index i) {

@@ -24,6 +24,17 @@ class Constraints {
     /// `name` is what messages call it.
     void add(const std::vector<KnotVector>& axes, std::span<const double> parameter,
              std::span<const int> orders, std::span<const double> value, std::string name);
+    /// Adds: the derivative of the given orders at `parameter` has the direction `direction`; its
+    /// length is free until it is given by `with_lengths`.
+    void add_direction(const std::vector<KnotVector>& axes, std::span<const double> parameter,
+                       std::span<const int> orders, std::span<const double> direction,
+                       std::string name);
+    /// Adds: the free control point of the given index is `value`.
+    void fix(Index control, std::span<const double> value, std::string name);
+    /// Rows whose value has a direction only.
+    const std::vector<Index>& directions() const { return directions_; }
+    /// The same constraints with lengths given to the directions, in order: none is left free.
+    Constraints with_lengths(std::span<const double> lengths) const;
 
     /// C P: (k x dim).
     PointSet apply(const PointSet& control) const;
@@ -33,9 +44,9 @@ class Constraints {
     /// only shift).
     Constraints centred(const std::vector<double>& centre) const;
 
-    /// Throws InvalidInput when there are more constraints than control points, or some depend on
-    /// each other: then a smallest such set is named, as contradicting or as saying the same.
-    void check_independent(Index controls) const;
+    /// The constraints without those that follow from the others. Throws InvalidInput when more
+    /// than `controls` are left, or some contradict each other: then a smallest such set is named.
+    Constraints independent(Index controls) const;
 
   private:
     struct Entry {
@@ -44,7 +55,14 @@ class Constraints {
     };
     std::vector<std::vector<Entry>> rows_;
     std::vector<double> sums_; // of a row's entries: 1 for a position, 0 for a derivative
+    /// Names the rows that row `last`, a combination of them with the parts `how`, contradicts;
+    /// empty when it follows from them.
+    std::string clash_words(std::span<const double> how, Index last) const;
+    void add_row(std::vector<Entry> row, double sum, std::span<const double> value,
+                 std::string name);
+
     std::vector<std::string> names_;
+    std::vector<Index> directions_;
     PointSet values_;
 };
 
