@@ -12,6 +12,12 @@ class InvalidInput : public std::invalid_argument {
     using std::invalid_argument::invalid_argument;
 };
 
+/// Equalities that cannot all hold, over the control points that there are.
+class ConstraintConflict : public InvalidInput {
+  public:
+    using InvalidInput::InvalidInput;
+};
+
 /// A file that cannot be read or written as asked. The message starts with `path:` or
 /// `path:line:column:`.
 class FileError : public std::runtime_error {

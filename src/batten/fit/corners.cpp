@@ -24,14 +24,20 @@ double turning(std::span<const double> a, std::span<const double> b, std::span<c
 
 } // namespace
 
-std::vector<Index> find_corners(const Points& p) {
+std::vector<Index> find_corners(const Points& p, Closure closure) {
     constexpr double sharp = 0.6; // radians, 34 degrees
     std::vector<Index> corners;
-    const auto turn = [&](Index i) { return turning(p[i - 1], p[i], p[i + 1]); };
-    for (Index i = 2; i + 2 < p.size(); ++i) {
-        const double here = turn(i);
-        if (here < sharp || turning(p[i - 2], p[i], p[i + 2]) < sharp) continue;
-        const double beside = std::max(turn(i - 1), turn(i + 1));
+    const Index m = p.size();
+    const bool closed = closure == Closure::closed;
+    if (m < 5) return corners;
+    const auto at = [&](Index i) { return p[(i + m) % m]; };
+    const auto turn = [&](Index i, Index reach) {
+        return turning(at(i - reach), at(i), at(i + reach));
+    };
+    for (Index i = closed ? 0 : 2; i + (closed ? 0 : 2) < m; ++i) {
+        const double here = turn(i, 1);
+        if (here < sharp || turn(i, 2) < sharp) continue;
+        const double beside = std::max(turn(i - 1, 1), turn(i + 1, 1));
         if (beside < here / 3) corners.push_back(i);
     }
     return corners;

@@ -30,12 +30,26 @@ KnotVector with_interior(const CurveTask& task, const KnotVector& old,
     return knots_around(task.degree, interior, old.begin(), old.end(), task.closure);
 }
 
-std::vector<double> with_corners(const CurveTask& task, std::vector<double> interior) {
-    for (Index i : task.corners) std::erase(interior, task.parameters[static_cast<std::size_t>(i)]);
-    for (Index i : task.corners)
-        interior.insert(interior.end(), static_cast<std::size_t>(task.degree),
-                        task.parameters[static_cast<std::size_t>(i)]);
-    std::sort(interior.begin(), interior.end());
+std::vector<double> lasting_knots(const CurveTask& task) {
+    std::vector<double> result;
+    const bool closed = task.closure == Closure::closed;
+    const bool seam_is_corner = closed && std::ranges::binary_search(task.corners, Index{0});
+    if (closed && !seam_is_corner) // one of the seam's knots is there by itself
+        for (int k = task.seam_continuity; k + 1 < task.degree; ++k) result.push_back(0);
+    for (Index i : task.corners) {
+        const bool seam = closed && i == 0;
+        result.insert(result.end(), static_cast<std::size_t>(task.degree - (seam ? 1 : 0)),
+                      task.parameters[static_cast<std::size_t>(i)]);
+    }
+    std::ranges::sort(result);
+    return result;
+}
+
+std::vector<double> with_lasting_knots(const CurveTask& task, std::vector<double> interior) {
+    const std::vector<double> lasting = lasting_knots(task);
+    for (double t : lasting) std::erase(interior, t);
+    interior.insert(interior.end(), lasting.begin(), lasting.end());
+    std::ranges::sort(interior);
     return interior;
 }
 

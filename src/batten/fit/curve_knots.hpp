@@ -20,8 +20,12 @@ std::vector<double> interior_knots(const KnotVector& knots);
 KnotVector with_interior(const CurveTask& task, const KnotVector& old,
                          const std::vector<double>& interior);
 
-/// Adds the corners' knots, of full multiplicity, to ascending others.
-std::vector<double> with_corners(const CurveTask& task, std::vector<double> interior);
+/// Knots that the search keeps, ascending: of full multiplicity at corners, as many as its
+/// continuity takes at a closed curve's seam.
+std::vector<double> lasting_knots(const CurveTask& task);
+
+/// Adds these to ascending others.
+std::vector<double> with_lasting_knots(const CurveTask& task, std::vector<double> interior);
 
 /// Part of what is allowed between samples that the trial uses, at most 1 being good.
 double between(const CurveTask& task, const CurveTrial& trial);

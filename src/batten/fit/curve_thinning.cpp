@@ -112,14 +112,13 @@ std::vector<double> spread(const CurveTask& task, const CurveTrial& trial, std::
 void spread_out(const CurveTask& task, CurveTrial& trial) {
     const CurveTrial source = trial;
     for (int smoothing : {1, 12, evenly}) {
-        std::size_t met = interior_knots(trial.knots).size() -
-                          task.corners.size() * static_cast<std::size_t>(task.degree);
+        std::size_t met = interior_knots(trial.knots).size() - lasting_knots(task).size();
         std::size_t missed =
             static_cast<std::size_t>(task.closure == Closure::closed ? task.degree : 0);
         while (met > missed + 1) {
             const std::size_t count = (met + missed) / 2;
             const std::vector<double> interior =
-                with_corners(task, spread(task, source, count, smoothing));
+                with_lasting_knots(task, spread(task, source, count, smoothing));
             CurveTrial attempt = source;
             attempt.parameters = task.parameters;
             bool good = without(task, attempt, interior, trial_rounds);
@@ -164,10 +163,9 @@ void thin_in_batches(const CurveTask& task, CurveTrial& trial) {
     }
 }
 
-bool is_corner_knot(const CurveTask& task, const std::vector<double>& interior, std::size_t j) {
-    return std::ranges::any_of(task.corners, [&](Index i) {
-        return task.parameters[static_cast<std::size_t>(i)] == interior[j];
-    });
+bool is_lasting(const CurveTask& task, double knot) {
+    const std::vector<double> lasting = lasting_knots(task);
+    return std::ranges::binary_search(lasting, knot);
 }
 
 /// Takes out knots one by one, the least significant first. A knot that cannot go is not tried
@@ -185,8 +183,7 @@ void thin_one_by_one(const CurveTask& task, CurveTrial& trial) {
             if (!gone && j < rest.size() &&
                 interior[j] < rest[j]) { // two knots made one between them
                 rest[j] = (interior[j] + rest[j]) / 2;
-                gone = !is_corner_knot(task, interior, j) &&
-                       !is_corner_knot(task, interior, j + 1) &&
+                gone = !is_lasting(task, interior[j]) && !is_lasting(task, interior[j + 1]) &&
                        without(task, trial, rest, trial_rounds);
             }
             if (!gone) {

@@ -56,6 +56,7 @@ bool refine(const CurveTask& task, CurveTrial& trial, const std::vector<double>&
     bool any = false;
     for (double t : fresh) {
         if (static_cast<Index>(interior.size()) + task.degree + 1 >= most) break;
+        if (std::ranges::count(interior, t) >= task.degree) continue;
         std::vector<double> longer = interior;
         longer.insert(std::upper_bound(longer.begin(), longer.end(), t), t);
         const KnotVector knots = with_interior(task, trial.knots, longer);
@@ -113,10 +114,13 @@ struct Refinement {
 CurveTrial refine_by(const Refinement& way, const CurveTask& task, Index most) {
     constexpr int most_rounds = 60;
     CurveTrial trial;
-    trial.knots = task.closure == Closure::closed
-                      ? uniform_knots(task.degree, 2 * task.degree + 2, 0, 1, Closure::closed)
-                      : knots_around(task.degree, with_corners(task, {}), task.parameters.front(),
-                                     task.parameters.back());
+    const bool closed = task.closure == Closure::closed;
+    std::vector<double> first;
+    for (int k = 1; closed && k < 2 * task.degree + 2; ++k)
+        first.push_back(k / (2.0 * task.degree + 2));
+    trial.knots = knots_around(task.degree, with_lasting_knots(task, first),
+                               closed ? 0 : task.parameters.front(),
+                               closed ? 1 : task.parameters.back(), task.closure);
     trial.parameters = task.parameters;
     trial.ratio.assign(trial.parameters.size(), 0.0);
     CurveTrial best;
@@ -128,7 +132,12 @@ CurveTrial refine_by(const Refinement& way, const CurveTask& task, Index most) {
         const bool met = settle(task, trial, way.rounds, KnotShift::none);
         if (trial.worst < best.worst) best = trial;
         if (met) break;
-        if (!std::isfinite(trial.worst)) trial = before;
+        if (!std::isfinite(trial.worst)) {
+            const std::vector<double> marked = trial.ratio;
+            best.conflict = trial.conflict;
+            trial = before;
+            trial.ratio = marked;
+        }
         if (!refine(task, trial,
                     knots_where_the_error_is(task, trial, std::max(1.0, way.least * trial.worst)),
                     most) &&
@@ -167,6 +176,20 @@ CurveWithin refined(const CurveTask& task, Index most) {
         if ((result.met && least_straying <= 1) || task.parameters.size() > 5000) break;
     }
     result.stages.emplace_back("refined", result.trial.knots.free_count());
+    return result;
+}
+
+CurveWithin refined_further(const CurveTask& task, const CurveWithin& fit, Index most) {
+    constexpr int most_rounds = 8;
+    CurveWithin result = fit;
+    CurveTrial& trial = result.trial;
+    for (int round = 0; round < most_rounds; ++round) {
+        trial.weights = first_weights(task);
+        result.met = settle(task, trial, 6, KnotShift::none);
+        if (result.met || !std::isfinite(trial.worst)) break;
+        if (!refine(task, trial, knots_where_the_error_is(task, trial), most)) break;
+    }
+    result.stages.emplace_back("reshaped", trial.knots.free_count());
     return result;
 }
 

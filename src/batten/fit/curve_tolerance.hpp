@@ -20,6 +20,11 @@ struct CurveWithin {
 /// that. Bounded in rounds.
 CurveWithin refined(const CurveTask& task, Index most_control_points);
 
+/// A fit whose task has got a limit on inflections since: refined from where it stands until it is
+/// within tolerance under the limit, too. Bounded in rounds.
+CurveWithin refined_further(const CurveTask& task, const CurveWithin& fit,
+                            Index most_control_points);
+
 /// Second half: spreads fewer knots anew, then takes out those that are not needed, batch by batch
 /// and one by one. Bounded in trials.
 void thin_out(const CurveTask& task, CurveWithin& fit);

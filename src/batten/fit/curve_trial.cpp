@@ -2,6 +2,9 @@
 
 #include <batten/basis/place_knots.hpp>
 #include <batten/fit/curve_pieces.hpp>
+#include <batten/fit/held.hpp>
+#include <batten/fit/keep_shape.hpp>
+#include <batten/shape/polygon.hpp>
 #include <batten/solve/direct.hpp>
 #include <batten/system/collocation.hpp>
 #include <batten/system/factored_system.hpp>
@@ -18,11 +21,30 @@ PointSet solve(const CurveTask& task, const CurveTrial& trial) {
     const auto origin = task.samples.points[0];
     BandedSystem system(trial.knots, {origin.begin(), origin.end()});
     system.add(trial.parameters, task.samples.points, trial.weights);
-    if (task.hold.interpolate.empty()) return uncentred(solve_direct(system), system.centre());
-    const Parameters parameters{{trial.parameters}, {}};
-    const Constraints exact =
-        interpolate_samples({trial.knots}, task.samples, parameters, task.hold.interpolate);
-    return uncentred(solve_direct(system, exact.centred(system.centre())), system.centre());
+    Constraints exact(task.samples.dim());
+    if (task.hold.equalities())
+        exact = held_constraints({trial.knots}, task.samples, {{trial.parameters}, {}}, task.hold)
+                    .centred(system.centre());
+    const PointSet control = task.most_inflections >= 0
+                                 ? solve_with_inflections(system, exact, task.most_inflections)
+                                 : solve_direct(system, exact);
+    return uncentred(control, system.centre());
+}
+
+/// Makes the samples that must be hit look far out, so that knots go to them.
+void mark_held(const CurveTask& task, CurveTrial& trial) {
+    std::ranges::fill(trial.ratio, 0.0);
+    for (Index i : task.hold.interpolate) trial.ratio[static_cast<std::size_t>(i)] = 10;
+    for (const HeldTangent& tangent : task.hold.tangents)
+        trial.ratio[static_cast<std::size_t>(tangent.sample)] = 10;
+}
+
+constexpr double misshapen = 1.25; // stands for a distance that is not reached
+
+/// Whether the control polygon bends no more often than it may.
+bool shape_kept(const CurveTask& task, const CurveTrial& trial) {
+    return task.most_inflections < 0 ||
+           inflection_count(trial.control, task.closure) <= task.most_inflections;
 }
 
 /// One Gauss-Newton step of each sample's parameter towards its closest point, kept in order.
@@ -33,7 +55,7 @@ void correct_parameters(const CurveTask& task, const CurvePieces& pieces, CurveT
     const bool open = task.closure == Closure::open;
     for (std::size_t i = 0; i < m; ++i) {
         if (open && (i == 0 || i + 1 == m)) continue; // the ends stay at the ends
-        if (std::ranges::binary_search(task.corners, static_cast<Index>(i))) continue;
+        if (std::ranges::binary_search(task.fixed, static_cast<Index>(i))) continue;
         const CurvePoint at = pieces(old[i]);
         double slope = 0;
         double curvature = 0;
@@ -69,6 +91,7 @@ void measure(const CurveTask& task, const CurvePieces& pieces, CurveTrial& trial
         trial.ratio[i] = std::sqrt(square) / task.tolerance[i];
         trial.worst = std::max(trial.worst, trial.ratio[i]);
     }
+    if (!shape_kept(task, trial)) trial.worst = std::max(trial.worst, misshapen);
     if (!std::isfinite(trial.worst)) trial.worst = std::numeric_limits<double>::infinity();
 }
 
@@ -125,9 +148,13 @@ bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shif
         if (task.cancelled && task.cancelled()) throw Cancelled("the fit was cancelled");
         try {
             trial.control = solve(task, trial);
-        } catch (
-            const SolverError&) { // samples crowd at one side of a span: the round before stands
+        } catch (const SolverError&) { // samples crowd at one side of a span
             trial.worst = std::numeric_limits<double>::infinity();
+            break;                                     // the round before stands
+        } catch (const ConstraintConflict& conflict) { // too few knots where something must hold
+            trial.conflict = conflict.what();
+            trial.worst = std::numeric_limits<double>::infinity();
+            mark_held(task, trial);
             break;
         }
         const CurvePieces pieces(trial.knots, trial.control);

@@ -5,6 +5,7 @@
 #include <batten/system/constraints.hpp>
 
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace batten {
@@ -16,12 +17,18 @@ struct CurveTask {
     int degree = 3;
     Closure closure = Closure::open;
     HoldOptions hold{};
+    /// Inflections that the control polygon may have; negative: any number.
+    Index most_inflections = -1;
     /// Parameters that follow from the data alone; the corrected ones may have been led astray by a
     /// coarse curve.
     std::vector<double> parameters{};
     /// Samples that are corners: a knot of full multiplicity each, at the sample's parameter, which
     /// stays.
     std::vector<Index> corners{};
+    /// Order up to which derivatives agree at a closed curve's seam; degree - 1 is no condition.
+    int seam_continuity = max_degree;
+    /// Samples whose parameters stay, ascending: corners, the seam, those with a tangent.
+    std::vector<Index> fixed{};
     /// Greatest part of what is allowed between samples (measure/between_samples.hpp) that a
     /// thinner curve may use.
     double between = 1;
@@ -37,7 +44,8 @@ struct CurveTrial {
     std::vector<double> weights;
     PointSet control;          ///< free control points
     std::vector<double> ratio; ///< distance over tolerance, per sample
-    double worst = 0;          ///< the largest of these
+    std::string conflict;      ///< why what must hold could not on the last knots tried
+    double worst = 0;          ///< the largest of these; above 1, too, when the shape is not kept
 };
 
 /// Whether `settle` may shift knots towards where the error is.

@@ -2,9 +2,12 @@
 
 #include <batten/core/stopwatch.hpp>
 #include <batten/fit/epia.hpp>
+#include <batten/fit/held.hpp>
+#include <batten/fit/outliers.hpp>
 #include <batten/fit/pia.hpp>
 #include <batten/fit/plan.hpp>
 #include <batten/fit/run.hpp>
+#include <batten/fit/smoothing.hpp>
 #include <batten/fit/tolerance.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/system/collocation.hpp>
@@ -32,7 +35,7 @@ std::string undetermined_axes(const std::vector<KnotVector>& axes, const Paramet
 std::string choose_method(const FitOptions& options, const std::string& gap,
                           const Parameters& parameters, FitReport& report) {
     const std::string& name = options.method.name;
-    const bool exact = !options.hold.interpolate.empty();
+    const bool exact = options.hold.equalities();
     const bool shape = options.hold.preserve != Preserve::nothing;
     if (name == "direct" && !gap.empty())
         throw InvalidInput(fmt::format(
@@ -50,7 +53,7 @@ std::string choose_method(const FitOptions& options, const std::string& gap,
         report.method_reason = "the shape is kept step by step";
         return exact ? "clspia" : "mlspia";
     }
-    if (parameters.is_scattered() && !exact) {
+    if (parameters.is_scattered() && !exact && !options.smooth.wanted) {
         report.method_reason = "a cloud: conjugate gradients, preconditioned axis by axis, cost "
                                "less than a sparse factorisation";
         return "cg";
@@ -81,21 +84,37 @@ void note_duplicates(const Parameters& parameters, FitReport& report) {
     }
 }
 
+/// What smoothing decides where the caller left it open: enough control points, and parameters of
+/// a noisy sequence.
+void prepare_smoothing(const Samples& samples, ShapeOptions& shape) {
+    if (shape.control_points.empty() && shape.knots.empty())
+        shape.control_points = smoothing_size(samples, shape);
+    const bool chords = !shape.parameters && shape.parametrization == Parametrization::chord;
+    if (chords && samples.grid.empty() && samples.size() > 20)
+        shape.parameters = {{noise_aware_parameters(samples.points, shape.closures[0])}, {}};
+}
+
 /// A fit with stated knots or a stated number of control points, by least squares.
-FitResult fit_fixed(const Samples& samples, const FitOptions& options) {
+FitResult fit_fixed(const Samples& samples, FitOptions options) {
+    if (options.smooth.wanted) prepare_smoothing(samples, options.shape);
     FitResult result;
     FitReport& report = result.report;
     Stopwatch watch;
     const AxisPlan plan = plan_axes(samples, options.shape);
-    result.parameters = choose_parameters(samples, options.shape, plan);
+    check_held(options.hold, samples, plan.degree, plan.closures);
+    result.parameters = parameters_for_boundaries(
+        samples, choose_parameters(samples, options.shape, plan), options.hold.boundaries);
     note_duplicates(result.parameters, report);
     report.seconds.emplace_back("parametrize", watch.lap());
     stop_if_cancelled(options);
-    const std::vector<KnotVector> axes = choose_knots(result.parameters, options.shape, plan);
-    report.method = choose_method(options, undetermined_axes(axes, result.parameters),
-                                  result.parameters, report);
+    std::vector<KnotVector> axes = choose_knots(result.parameters, options.shape, plan);
+    for (std::size_t k = 0; k < axes.size(); ++k)
+        axes[k] = knots_for_boundaries(axes[k], static_cast<int>(k), options.hold.boundaries);
+    // a smooth spline is determined where there are no samples, too
+    const std::string gap = options.smooth.wanted ? "" : undetermined_axes(axes, result.parameters);
+    report.method = choose_method(options, gap, result.parameters, report);
     const Constraints constraints =
-        interpolate_samples(axes, samples, result.parameters, options.hold.interpolate);
+        held_constraints(axes, samples, result.parameters, options.hold);
     report.seconds.emplace_back("knots", watch.lap());
     stop_if_cancelled(options);
     const PointSet control =
@@ -126,6 +145,22 @@ void describe(FitResult& result, const Samples& samples, const FitOptions& optio
     for (Index i : options.hold.interpolate)
         report.constraint_error =
             std::max(report.constraint_error, deviations[static_cast<std::size_t>(i)]);
+    report.tangents = static_cast<Index>(options.hold.tangents.size());
+    report.tangent_error =
+        tangent_error(result.spline, samples, result.parameters, options.hold.tangents);
+    report.boundaries = static_cast<Index>(options.hold.boundaries.size());
+}
+
+FitResult fit_all(const Samples& samples, const FitOptions& options) {
+    const std::string& method = options.method.name;
+    FitResult result = method == "pia"              ? fit_pia(samples, options)
+                       : method == "epia"           ? fit_epia(samples, options)
+                       : options.tolerance.stated() ? fit_to_tolerance(samples, options)
+                                                    : fit_fixed(samples, options);
+    Stopwatch watch;
+    describe(result, samples, options);
+    result.report.seconds.emplace_back("deviation", watch.lap());
+    return result;
 }
 
 } // namespace
@@ -135,14 +170,14 @@ FitResult fit(const Samples& samples, const FitOptions& options) {
     check(samples);
     check_settings(method_entry(options.method.name), options.method.settings);
     stop_if_cancelled(options);
-    const std::string& method = options.method.name;
-    FitResult result = method == "pia"              ? fit_pia(samples, options)
-                       : method == "epia"           ? fit_epia(samples, options)
-                       : options.tolerance.stated() ? fit_to_tolerance(samples, options)
-                                                    : fit_fixed(samples, options);
+    if (options.outliers == Outliers::count) return fit_all(samples, options);
     Stopwatch watch;
-    describe(result, samples, options);
-    result.report.seconds.emplace_back("deviation", watch.lap());
+    const std::vector<Index> outliers = find_outliers(samples, options);
+    const WithoutOutliers rest = without_outliers(samples, options, outliers);
+    const double seconds = watch.lap();
+    FitResult result = fit_all(rest.samples, rest.options);
+    account_for(samples, options, rest, outliers, result);
+    result.report.seconds.emplace_back("outliers", seconds);
     return result;
 }
 

@@ -1,6 +1,7 @@
 #include <batten/fit/grid_tolerance.hpp>
 
 #include <batten/basis/place_knots.hpp>
+#include <batten/fit/held.hpp>
 #include <batten/iterate/conjugate_gradients.hpp>
 #include <batten/iterate/iterate.hpp>
 #include <batten/measure/deviation.hpp>
@@ -98,35 +99,30 @@ KnotVector knots_by(const Spread& spread, const std::vector<double>& t, int degr
 /// Fits with given numbers of control points and remembers the best that met the tolerance.
 class Search {
   public:
-    Search(const Samples& samples, const Parameters& parameters,
-           const std::vector<double>& tolerance, const std::vector<int>& degree,
-           const std::vector<Closure>& closures, std::vector<Spread> spreads,
-           const std::function<bool()>& cancelled)
-        : samples_(samples),
-          parameters_(parameters),
-          tolerance_(tolerance),
-          degree_(degree),
-          closures_(closures),
-          spreads_(std::move(spreads)),
-          ascending_(ascending(parameters)),
-          cancelled_(cancelled) {}
+    Search(const GridTask& task, std::vector<Spread> spreads)
+        : task_(task), spreads_(std::move(spreads)), ascending_(ascending(task.parameters)) {}
 
     /// Largest distance over tolerance with n control points per axis.
     double operator()(const std::vector<Index>& n) {
-        if (cancelled_ && cancelled_()) throw Cancelled("the fit was cancelled");
+        if (task_.cancelled && task_.cancelled()) throw Cancelled("the fit was cancelled");
         std::vector<KnotVector> axes;
         for (std::size_t k = 0; k < n.size(); ++k) {
-            axes.push_back(knots_by(spreads_[k], ascending_[k], degree_[k], n[k], closures_[k]));
-            if (!parameters_.is_scattered() && undetermined(axes.back(), ascending_[k]))
+            axes.push_back(knots_for_boundaries(
+                knots_by(spreads_[k], ascending_[k], task_.degree[k], n[k], task_.closures[k]),
+                static_cast<int>(k), task_.hold.boundaries));
+            if (axes.back().free_count() > n[k]) // the boundaries alone have more
+                return std::numeric_limits<double>::infinity();
+            if (!task_.parameters.is_scattered() && undetermined(axes.back(), ascending_[k]))
                 return std::numeric_limits<double>::infinity();
         }
         try {
-            const auto system = assemble(axes, samples_, parameters_);
+            const auto system = assemble(axes, task_.samples, task_.parameters);
             Spline spline = Spline::from_free(axes, uncentred(solve(*system), system->centre()));
-            const std::vector<double> d = parametric_deviations(spline, samples_, parameters_);
+            const std::vector<double> d =
+                parametric_deviations(spline, task_.samples, task_.parameters);
             double worst = 0;
             for (std::size_t i = 0; i < d.size(); ++i)
-                worst = std::max(worst, d[i] / tolerance_[i]);
+                worst = std::max(worst, d[i] / task_.tolerance[i]);
             if (worst <= 1 || !met) {
                 last = std::move(spline);
                 last_worst = worst;
@@ -135,32 +131,35 @@ class Search {
             return worst;
         } catch (const SolverError&) {
             return std::numeric_limits<double>::infinity();
+        } catch (const ConstraintConflict& error) { // with more control points it may hold
+            conflict = error.what();
+            return std::numeric_limits<double>::infinity();
         }
     }
 
     Spline last;
     double last_worst = std::numeric_limits<double>::infinity();
     bool met = false;
+    std::string conflict;
 
   private:
     /// Directly on a grid; on a cloud by preconditioned conjugate gradients, which hold still what
     /// no sample reaches.
     PointSet solve(const NormalSystem& system) const {
-        if (!parameters_.is_scattered()) return solve_direct(system);
+        if (task_.hold.equalities())
+            return solve_direct(
+                system, held_constraints(system.axes(), task_.samples, task_.parameters, task_.hold)
+                            .centred(system.centre()));
+        if (!task_.parameters.is_scattered()) return solve_direct(system);
         PointSet control(system.size(), system.dim());
         ConjugateGradients cg(system, Preconditioner::axes);
         iterate(cg, control, {.max_iterations = 300, .relative_gradient = 1e-9});
         return control;
     }
 
-    const Samples& samples_;
-    const Parameters& parameters_;
-    const std::vector<double>& tolerance_;
-    const std::vector<int>& degree_;
-    const std::vector<Closure>& closures_;
+    const GridTask& task_;
     std::vector<Spread> spreads_;
     std::vector<std::vector<double>> ascending_;
-    const std::function<bool()>& cancelled_;
 };
 
 Index product(const std::vector<Index>& n) {
@@ -183,7 +182,15 @@ bool grow(Search& search, std::vector<Index>& n, const std::vector<Index>& most)
                 std::min(most[k], std::max(n[k] + 1,
                                            static_cast<Index>(static_cast<double>(n[k]) * factor)));
             const double w = search(longer);
-            if (best.empty() || w < best_worst) {
+            const auto filled = [&](const std::vector<Index>& size) {
+                double share = 0;
+                for (std::size_t a = 0; a < size.size(); ++a)
+                    share = std::max(share,
+                                     static_cast<double>(size[a]) / static_cast<double>(most[a]));
+                return share;
+            };
+            if (best.empty() || w < best_worst ||
+                (w == best_worst && filled(longer) < filled(best))) {
                 best_worst = w;
                 best = longer;
             }
@@ -197,11 +204,7 @@ bool grow(Search& search, std::vector<Index>& n, const std::vector<Index>& most)
 
 /// Shrinks each axis by ever smaller steps while the tolerance holds, trading one axis for another
 /// at the end.
-void shrink(Search& search, std::vector<Index>& n, const std::vector<int>& degree,
-            const std::vector<Closure>& closures) {
-    const auto least = [&](std::size_t k) {
-        return static_cast<Index>(degree[k] + 1) + (closures[k] == Closure::closed ? degree[k] : 0);
-    };
+void shrink(Search& search, std::vector<Index>& n, const std::vector<Index>& least) {
     for (Index step = std::max<Index>(1, *std::max_element(n.begin(), n.end()) / 8); step >= 1;
          step = step == 1 ? 0 : step / 2)
         for (bool any = true; any;) {
@@ -209,7 +212,7 @@ void shrink(Search& search, std::vector<Index>& n, const std::vector<int>& degre
             for (std::size_t k = 0; k < n.size(); ++k) {
                 std::vector<Index> shorter = n;
                 shorter[k] -= step;
-                if (shorter[k] >= least(k) && search(shorter) <= 1) {
+                if (shorter[k] >= least[k] && search(shorter) <= 1) {
                     n = shorter;
                     any = true;
                 }
@@ -224,7 +227,7 @@ void shrink(Search& search, std::vector<Index>& n, const std::vector<int>& degre
                         std::vector<Index> traded = n;
                         traded[a] += more;
                         traded[b] -= fewer;
-                        if (traded[b] < least(b) || product(traded) >= product(n)) continue;
+                        if (traded[b] < least[b] || product(traded) >= product(n)) continue;
                         if (search(traded) <= 1) {
                             n = traded;
                             any = true;
@@ -235,16 +238,14 @@ void shrink(Search& search, std::vector<Index>& n, const std::vector<int>& degre
 
 /// Surfaces: other lengths of the first axis, each with the fewest on the second that bisection
 /// finds.
-void rebalance(Search& search, std::vector<Index>& n, const std::vector<int>& degree,
-               const std::vector<Closure>& closures, const std::vector<Index>& most) {
+void rebalance(Search& search, std::vector<Index>& n, const std::vector<Index>& least,
+               const std::vector<Index>& most) {
     if (n.size() != 2) return;
     const std::vector<Index> start = n;
     for (double factor : {0.5, 0.6, 0.7, 0.8, 0.87, 0.93, 0.97, 1.04, 1.1, 1.2, 1.4, 1.7}) {
         const Index first = std::clamp(static_cast<Index>(static_cast<double>(start[0]) * factor),
-                                       static_cast<Index>(degree[0] + 1) +
-                                           (closures[0] == Closure::closed ? degree[0] : 0),
-                                       most[0]);
-        Index missed = degree[1] + (closures[1] == Closure::closed ? degree[1] : 0);
+                                       least[0], most[0]);
+        Index missed = least[1] - 1;
         Index met =
             std::min(most[1] + 1, (product(n) + first - 1) / first); // no better than what there is
         if (met <= missed + 1 || search({first, met - 1}) > 1) continue;
@@ -257,35 +258,51 @@ void rebalance(Search& search, std::vector<Index>& n, const std::vector<int>& de
     }
 }
 
+/// The fewest control points per axis: more where a boundary brings knots along.
+std::vector<Index> least_size(const GridTask& task) {
+    std::vector<Index> result;
+    for (std::size_t k = 0; k < task.degree.size(); ++k) {
+        const int p = task.degree[k];
+        if (task.closures[k] == Closure::closed) {
+            result.push_back(2 * p + 1);
+            continue;
+        }
+        const KnotVector plain = knots_around(p, {}, 0, 1);
+        result.push_back(std::min(
+            task.most[k],
+            knots_for_boundaries(plain, static_cast<int>(k), task.hold.boundaries).free_count()));
+    }
+    return result;
+}
+
 } // namespace
 
-GridWithin few_knots(const Samples& samples, const Parameters& parameters,
-                     const std::vector<double>& tolerance, const std::vector<int>& degree,
-                     const std::vector<Closure>& closures, const std::vector<Index>& most,
-                     const std::function<bool()>& cancelled) {
+GridWithin few_knots(const GridTask& task) {
     GridWithin best;
     Index fewest = std::numeric_limits<Index>::max();
-    const auto t = ascending(parameters);
+    const auto t = ascending(task.parameters);
+    const auto& degree = task.degree;
+    const auto& closures = task.closures;
     for (bool bent : {false, true}) {
-        if (bent && parameters.is_scattered()) break; // no rows to take differences along
+        if (bent && task.parameters.is_scattered()) break; // no rows to take differences along
         std::vector<Spread> spreads;
         for (std::size_t k = 0; k < degree.size(); ++k)
             spreads.push_back(bent && closures[k] == Closure::open
-                                  ? bend_spread(samples, t[k], k, degree[k])
+                                  ? bend_spread(task.samples, t[k], k, degree[k])
                                   : even_spread(t[k]));
-        Search search(samples, parameters, tolerance, degree, closures, std::move(spreads),
-                      cancelled);
+        Search search(task, std::move(spreads));
+        const std::vector<Index> least = least_size(task);
         std::vector<Index> n;
         for (std::size_t k = 0; k < degree.size(); ++k)
-            n.push_back(std::min(
-                most[k], std::max<Index>(
-                             degree[k] + 1 + (closures[k] == Closure::closed ? degree[k] : 0), 6)));
-        const bool met = grow(search, n, most);
+            n.push_back(std::min(task.most[k], std::max<Index>(least[k], 6)));
+        const bool met = grow(search, n, task.most);
         const Index grown = product(n);
+        if (search.last.axis_count() == 0 && !search.conflict.empty())
+            throw ConstraintConflict(search.conflict);
         if (met) {
-            shrink(search, n, degree, closures);
-            rebalance(search, n, degree, closures, most);
-            shrink(search, n, degree, closures);
+            shrink(search, n, least);
+            rebalance(search, n, least, task.most);
+            shrink(search, n, least);
             search(n);
         }
         if ((met && !best.met) ||

@@ -18,13 +18,21 @@ struct GridWithin {
     std::vector<std::pair<std::string, Index>> stages;
 };
 
+/// What a surface or volume must reach.
+struct GridTask {
+    const Samples& samples;
+    const Parameters& parameters;
+    const std::vector<double>& tolerance; ///< one per sample, positive
+    std::vector<int> degree;
+    std::vector<Closure> closures;
+    std::vector<Index> most; ///< control points per axis
+    const HoldOptions& hold;
+    const std::function<bool()>& cancelled;
+};
+
 /// Searches the numbers of control points per axis: grows the axis that helps more until every
 /// sample is within tolerance, then shrinks each as far as that holds; knots evenly, or denser
-/// where the data bend more along the axis, whichever takes fewer. `most`: at most that many
-/// control points per axis.
-GridWithin few_knots(const Samples& samples, const Parameters& parameters,
-                     const std::vector<double>& tolerance, const std::vector<int>& degree,
-                     const std::vector<Closure>& closures, const std::vector<Index>& most,
-                     const std::function<bool()>& cancelled = {});
+/// where the data bend more along the axis, whichever takes fewer.
+GridWithin few_knots(const GridTask& task);
 
 } // namespace batten

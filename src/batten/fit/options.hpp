@@ -3,6 +3,7 @@
 #include <batten/basis/place_knots.hpp>
 #include <batten/iterate/iterate.hpp>
 #include <batten/parametrize/parametrize.hpp>
+#include <batten/spline/spline.hpp>
 
 #include <functional>
 #include <optional>
@@ -17,6 +18,9 @@ struct ShapeOptions {
     /// Free control points per axis.
     std::vector<Index> control_points{};
     std::vector<Closure> closures{Closure::open};
+    /// Order of the derivatives that a closed curve may have jump at its first sample is above
+    /// this: 0 lets it bend there; degree - 1 (-1 stands for it) is as smooth as elsewhere.
+    int seam_continuity = -1;
     Parametrization parametrization = Parametrization::chord;
     /// Given parameters, in place of `parametrization`.
     std::optional<Parameters> parameters{};
@@ -51,11 +55,43 @@ enum class Preserve {
     inflections, ///< no turn changes its sign, so no inflection comes or goes
 };
 
+/// What a first derivative at a sample must be.
+enum class TangentKind {
+    direction,  ///< parallel to the value, of any length
+    derivative, ///< equal to the value, for parameters over [0, 1]
+};
+
+/// A first derivative along `axis` that the spline must have at a sample's parameter.
+struct HeldTangent {
+    Index sample = 0;
+    std::vector<double> value{}; ///< (dim)
+    int axis = 0;
+    TangentKind kind = TangentKind::direction;
+};
+
+/// Which end of an axis.
+enum class AxisEnd { begin, end };
+
+/// A curve that a surface (or a surface that a volume) must have as its boundary at one end of an
+/// axis: a spline over the other axes, whose domain is stretched to theirs.
+struct HeldBoundary {
+    int axis = 0;
+    AxisEnd end = AxisEnd::begin;
+    Spline spline{};
+};
+
 /// What must hold exactly.
 struct HoldOptions {
     /// Samples that the spline must pass through at their parameters.
     std::vector<Index> interpolate{};
+    std::vector<HeldTangent> tangents{};
+    std::vector<HeldBoundary> boundaries{};
     Preserve preserve = Preserve::nothing;
+
+    /// Whether any equality is asked for.
+    bool equalities() const {
+        return !interpolate.empty() || !tangents.empty() || !boundaries.empty();
+    }
 };
 
 /// Where a curve may have corners: knots of full multiplicity.
@@ -79,12 +115,30 @@ struct ToleranceOptions {
     bool stated() const { return value != 0 || !per_sample.empty(); }
 };
 
+/// Smoothness traded against closeness: what is minimised is the mean of the weighted squares plus
+/// lambda times the integral of the squared derivatives of `order` for parameters over [0, 1].
+struct SmoothOptions {
+    bool wanted = false;
+    /// 0: by generalised cross-validation.
+    double lambda = 0;
+    /// 2 or 3.
+    int order = 2;
+};
+
+/// What samples far from all others may do.
+enum class Outliers {
+    count,     ///< they count like any other
+    set_aside, ///< they are found by a robust fit, listed, and not fitted
+};
+
 /// Everything a fit can be told; the defaults are what `batten fit` does.
 struct FitOptions {
     ShapeOptions shape{};
     ToleranceOptions tolerance{};
     MethodOptions method{};
     HoldOptions hold{};
+    SmoothOptions smooth{};
+    Outliers outliers = Outliers::count;
     StopRule stop{};
     /// Keep an entry per iteration in the report.
     bool keep_history = false;

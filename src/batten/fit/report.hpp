@@ -37,16 +37,26 @@ struct FitReport {
     double predicted_rate = 0; ///< 0 when the theory gives none
     double observed_rate = 0;  ///< 0 when the run was too short
     Deviation deviation;
-    Index interpolated = 0;      ///< samples that must be hit exactly
-    double constraint_error = 0; ///< largest distance from one of them
-    Index inflections = -1;      ///< of the control polygon, where they are kept; else -1
-    double tolerance = 0;        ///< as stated, 0 when none was (per sample: the smallest)
-    std::string verdict;         ///< whether and how the tolerance was met, in words
-    double noise_level = 0;      ///< of the samples, where it was estimated; else 0
+    Index interpolated = 0;       ///< samples that must be hit exactly
+    double constraint_error = 0;  ///< largest distance from one of them
+    Index tangents = 0;           ///< directions and derivatives that must hold
+    double tangent_error = 0;     ///< largest sine of an angle, or difference over the data's size
+    Index boundaries = 0;         ///< boundaries that must hold
+    Index inflections = -1;       ///< of the control polygon, where they are kept; else -1
+    Index curve_inflections = -1; ///< of a planar curve fitted to a tolerance, those larger than a
+                                  ///< quarter of it; -1 where not counted
+    Index data_inflections = -1;  ///< the same of the samples
+    double tolerance = 0;         ///< as stated, 0 when none was (per sample: the smallest)
+    std::string verdict;          ///< whether and how the tolerance was met, in words
+    double noise_level = 0;       ///< of the samples, where it was estimated; else 0
     double between_samples = 0; ///< part of what is allowed between samples that is used: at most 1
                                 ///< is good; 0 where not checked
     std::vector<std::pair<std::string, Index>>
         stages;           ///< control points after each stage of a fit to a tolerance
+    double smoothing = 0; ///< lambda, where smoothness counts; else 0
+    double freedom = 0;   ///< degrees of freedom that cross-validation left; else 0
+    std::vector<Index>
+        set_aside;        ///< samples found to be outliers: not fitted, not in the deviation
     double data_size = 0; ///< diagonal of the samples' box
     std::vector<std::pair<std::string, double>> seconds; ///< per stage, in order
     std::vector<HistoryEntry> history;

@@ -2,6 +2,7 @@
 
 #include <batten/core/stopwatch.hpp>
 #include <batten/fit/plan.hpp>
+#include <batten/fit/smoothing.hpp>
 #include <batten/iterate/clspia.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/shape/limits.hpp>
@@ -121,6 +122,13 @@ PointSet least_squares(const std::vector<KnotVector>& axes, const Samples& sampl
                           : Rest{samples, parameters};
     const auto system = assemble(axes, rest.samples, rest.parameters);
     report.seconds.emplace_back("assemble", watch.lap());
+    if (options.smooth.wanted) {
+        const Smoothing smoothing = add_smoothing(*system, options.smooth);
+        report.smoothing = smoothing.lambda;
+        report.freedom = smoothing.freedom;
+        report.noise_level = smoothing.noise;
+        report.seconds.emplace_back("smoothing", watch.lap());
+    }
     const Constraints local = constraints.centred(system->centre());
     if (report.method == "direct") {
         check_settings(method_entry("direct"), options.method.settings);

@@ -15,6 +15,9 @@ namespace batten {
 /// positive, or for a cloud.
 FitResult fit_to_tolerance(const Samples& samples, const FitOptions& options);
 
+/// One tolerance per sample. Throws InvalidInput unless there is one for each, positive and finite.
+std::vector<double> sample_tolerances(const Samples& samples, const ToleranceOptions& options);
+
 /// Standard deviation of the noise of a sequence, from third differences: of the whole vector, all
 /// coordinates together. Overestimates where the sampling is coarse.
 double noise_level(const Points& sequence);

@@ -94,7 +94,8 @@ TEST(Iterate, mlspia_converges_from_any_lambda) {
     Mlspia method(*system);
     method.set_first_moves(random_points(30, 2, 77)); // A^T Lambda^0 of an arbitrary Lambda^0
     PointSet control = random_points(30, 2, 78);
-    EXPECT_EQ(iterate(method, control, {.relative_gradient = 1e-12}).termination, Termination::converged);
+    EXPECT_EQ(iterate(method, control, {.relative_gradient = 1e-12}).termination,
+              Termination::converged);
     EXPECT_LT(largest_difference(control, direct), 1e-10);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace batten {
 
@@ -36,6 +37,22 @@ double off_segment(std::span<const double> p, std::span<const double> a,
     return std::sqrt(square);
 }
 
+/// Whether the line of `count` steps from point `first` turns by more than three quarters of a full
+/// turn.
+bool turns_around(const PointSet& p, Index first, Index count) {
+    double turned = 0;
+    for (Index k = first; k + 2 <= first + count; ++k) {
+        const double ux = p(k + 1, 0) - p(k, 0);
+        const double uy = p(k + 1, 1) - p(k, 1);
+        const double vx = p(k + 2, 0) - p(k + 1, 0);
+        const double vy = p(k + 2, 1) - p(k + 1, 1);
+        turned += std::atan2(ux * vy - uy * vx, ux * vx + uy * vy);
+    }
+    return std::abs(turned) > 1.5 * std::numbers::pi;
+}
+
+constexpr double loop_excess = 2;
+
 } // namespace
 
 BetweenSamples check_between(const Spline& curve, const Points& q,
@@ -69,8 +86,12 @@ BetweenSamples check_between(const Spline& curve, const Points& q,
             stray = std::max(stray, off_segment(points[i * steps + k], q[i], q[j]));
             length += distance(points[i * steps + k], points[i * steps + k + 1]);
         }
-        const double excess =
+        double excess =
             std::max(stray / allowed, length / (1.2 * distance(q[i], q[j]) + 4 * t + 2 * arc));
+        if (q.dim() == 2 && turns_around(points, i * steps, steps)) {
+            ++result.loops;
+            excess = std::max(excess, loop_excess);
+        }
         if (excess > result.excess) {
             result.excess = excess;
             result.worst_sample = i;

@@ -55,7 +55,22 @@ std::string FitReport::to_json() const {
         json["interpolated"] = interpolated;
         json["constraint_error"] = number(constraint_error);
     }
+    if (smoothing > 0) json["smoothing"] = smoothing;
+    if (freedom > 0) {
+        json["degrees_of_freedom"] = freedom;
+        json["noise_level"] = number(noise_level);
+    }
+    if (!set_aside.empty()) json["set_aside"] = set_aside;
+    if (tangents > 0) {
+        json["tangents"] = tangents;
+        json["tangent_error"] = number(tangent_error);
+    }
+    if (boundaries > 0) json["boundaries"] = boundaries;
     if (inflections >= 0) json["inflections"] = inflections;
+    if (curve_inflections >= 0) {
+        json["curve_inflections"] = curve_inflections;
+        json["data_inflections"] = data_inflections;
+    }
     if (tolerance > 0) {
         json["tolerance"] = tolerance;
         json["verdict"] = verdict;

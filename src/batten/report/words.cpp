@@ -1,5 +1,6 @@
 #include <batten/fit/report.hpp>
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -50,11 +51,12 @@ std::string FitReport::full() const {
     if (tolerance > 0) {
         line("tolerance", fmt::format("{:.6g}: {}", tolerance, verdict));
         std::string counts;
-        for (const auto& [stage, count] : stages) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", stage, count);
+        for (const auto& [stage, count] : stages)
+            counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", stage, count);
         if (!counts.empty()) line("control", counts);
     }
     line("method", method_reason.empty() ? method : fmt::format("{} ({})", method, method_reason));
-    if (method != "direct") {
+    if (method != "direct" && method != "tolerance") {
         std::string chosen;
         for (const auto& [name, value] : settings)
             chosen += fmt::format("{}{} = {:.12g}", chosen.empty() ? "" : ", ", name, value);
@@ -65,11 +67,34 @@ std::string FitReport::full() const {
             line("rate", fmt::format("{:.4f} per iteration observed, {:.4f} predicted",
                                      observed_rate, predicted_rate));
     }
+    if (smoothing > 0)
+        line("smoothing",
+             fmt::format("lambda {:.4g}{}", smoothing,
+                         freedom > 0
+                             ? fmt::format(" by cross-validation, {:.1f} degrees of freedom, "
+                                           "noise level {:.3g}",
+                                           freedom, noise_level)
+                             : ""));
+    if (!set_aside.empty()) {
+        const std::size_t shown = std::min<std::size_t>(set_aside.size(), 12);
+        line("set aside",
+             fmt::format(
+                 "{} samples as outliers: {}{}", set_aside.size(),
+                 fmt::join(set_aside.begin(), set_aside.begin() + static_cast<Index>(shown), ", "),
+                 shown < set_aside.size() ? ", ..." : ""));
+    }
     if (interpolated > 0)
         line("exact", fmt::format("{} samples hit to {:.2g}", interpolated, constraint_error));
+    if (tangents > 0)
+        line("exact", fmt::format("{} {} held to {:.2g}", tangents,
+                                  tangents == 1 ? "tangent" : "tangents", tangent_error));
+    if (boundaries > 0)
+        line("exact",
+             fmt::format("{} {} held", boundaries, boundaries == 1 ? "boundary" : "boundaries"));
     if (inflections >= 0)
-        line("shape",
-             fmt::format("{} inflections in the control polygon, as at the start", inflections));
+        line("shape", fmt::format("{} inflections in the control polygon, {}", inflections,
+                                  tolerance > 0 ? fmt::format("{} in the samples", data_inflections)
+                                                : "as at the start"));
     std::string times;
     for (const auto& [stage, time] : seconds)
         times += fmt::format("{}{} {:.2g}", times.empty() ? "" : ", ", stage, time);

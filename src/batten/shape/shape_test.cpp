@@ -34,14 +34,16 @@ TEST(Limits, keep_every_turn_for_any_moves) {
 }
 
 TEST(Limits, rays_hold_only_on_the_neighbours_side) {
-    // the middle point moves down across the line through its neighbours, far outside the stretch between them
+    // the middle point moves down across the line through its neighbours, far outside the stretch
+    // between them
     const PointSet polygon({0, 0, 1, 0, 5, 1, 2, 0.1, 3, 0}, 2);
     PointSet moves(5, 2);
     moves(2, 1) = -3;
     PointSet lines = moves;
     keep_inflections(polygon, lines, Closure::open, 0.8, Barrier::lines);
     EXPECT_GT(lines(2, 1), -3);
-    const PointSet far({0, 0, 1, 0, -5, 1, 2, 0, 3, 0}, 2); // meets the line through (1, 0) and (2, 0) behind both
+    const PointSet far({0, 0, 1, 0, -5, 1, 2, 0, 3, 0},
+                       2); // meets the line through (1, 0) and (2, 0) behind both
     PointSet whole(5, 2);
     whole(2, 1) = -3;
     PointSet ray = whole;

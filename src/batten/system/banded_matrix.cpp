@@ -45,4 +45,15 @@ std::vector<double> BandedMatrix::diagonal() const {
     return result;
 }
 
+void BandedMatrix::add(double factor, const BandedMatrix& other) {
+    for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += factor * other.values_[k];
+}
+
+double BandedMatrix::total() const {
+    double sum = 0;
+    for (Index i = 0; i < size_; ++i)
+        for (int k = 0; k <= bandwidth_; ++k) sum += (k == 0 ? 1 : 2) * at(i, k);
+    return sum;
+}
+
 } // namespace batten

@@ -35,6 +35,10 @@ class BandedMatrix {
     /// y = M x along one axis, x and y (outer x n x inner).
     void apply(const double* x, double* y, AxisLayout layout) const;
     std::vector<double> diagonal() const;
+    /// Adds factor times a matrix of the same shape.
+    void add(double factor, const BandedMatrix& other);
+    /// Sum of all entries.
+    double total() const;
 
   private:
     Index size_ = 0;

@@ -2,6 +2,7 @@
 
 #include <batten/system/chebyshev_maps.hpp>
 #include <batten/system/moments.hpp>
+#include <batten/system/roughness.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -13,6 +14,8 @@ namespace {
 
 constexpr Index chunk_samples = 1 << 14;
 constexpr Index wave_chunks = 16; // chunks under way at once: bounds the memory of their results
+
+constexpr Index few_samples = 4; // per B-spline: below, a span's moments cost more than they save
 
 /// What the samples of one chunk add to the spans that they touch.
 struct ChunkSums {
@@ -46,9 +49,12 @@ class ChunkPass {
             Index end = std::lower_bound(t + i, t + count, limit) - t;
             if (last) end = std::upper_bound(t + i, t + count, limit) - t;
             end = std::max(end, i + 1);
-            add_span(span, shift,
-                     {t + i, q + i * dim_, w == nullptr ? nullptr : w + i, end - i, dim_}, energy,
-                     room, sums);
+            const SpanSamples samples{t + i, q + i * dim_, w == nullptr ? nullptr : w + i, end - i,
+                                      dim_};
+            if (samples.count < few_samples * (p + 1))
+                add_few(span, shift, samples, energy, sums);
+            else
+                add_span(span, shift, samples, energy, room, sums);
             i = end;
         }
         sums.energy = energy.sum();
@@ -61,6 +67,34 @@ class ChunkPass {
         std::vector<Lanes> moments;
         std::vector<Lanes> values;
     };
+
+    /// Of a span with few samples: sample by sample.
+    void add_few(Index span, double shift, const SpanSamples& samples, Lanes& energy,
+                 ChunkSums& sums) const {
+        const int p = knots_.degree();
+        sums.spans.push_back(span);
+        const std::size_t gram = sums.grams.size();
+        const std::size_t at = sums.rhs.size();
+        sums.grams.resize(gram + static_cast<std::size_t>((p + 1) * (p + 2) / 2));
+        sums.rhs.resize(at + static_cast<std::size_t>((p + 1) * dim_));
+        for (Index s = 0; s < samples.count; ++s) {
+            const BasisValues b = basis_values(knots_, span, samples.parameter[s] - shift);
+            const double weight = samples.weight == nullptr ? 1 : samples.weight[s];
+            double* pair = sums.grams.data() + gram;
+            for (int i = 0; i <= p; ++i)
+                for (int j = i; j <= p; ++j)
+                    *pair++ +=
+                        weight * b[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(j)];
+            const double* point = samples.point + s * dim_;
+            for (Index d = 0; d < dim_; ++d) {
+                const double value = point[d] - centre_[static_cast<std::size_t>(d)];
+                energy.value[static_cast<std::size_t>(s % lanes)] += weight * value * value;
+                for (int i = 0; i <= p; ++i)
+                    sums.rhs[at + static_cast<std::size_t>(i * dim_ + d)] +=
+                        weight * value * b[static_cast<std::size_t>(i)];
+            }
+        }
+    }
 
     void add_span(Index span, double shift, const SpanSamples& samples, Lanes& energy, Room& room,
                   ChunkSums& sums) const {
@@ -137,6 +171,10 @@ void BandedSystem::add(std::span<const double> parameters, const Points& points,
 
 void BandedSystem::apply(const PointSet& x, PointSet& y) const {
     gram_.apply(x.data(), y.data(), {1, x.dim()});
+}
+
+void BandedSystem::add_roughness(double lambda, int order) {
+    gram_.add(lambda * gram_.total(), roughness_matrix(axes_[0], order)); // B-splines sum to one
 }
 
 } // namespace batten

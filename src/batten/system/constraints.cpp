@@ -123,7 +123,7 @@ Constraints Constraints::independent(Index controls) const {
         if (const std::string clash =
                 clash_words({dense.data(), static_cast<std::size_t>(size())}, k);
             !clash.empty())
-            throw InvalidInput(
+            throw ConstraintConflict(
                 size() > controls
                     ? fmt::format(
                           "{} constraints on {} control points: at most as many are possible",

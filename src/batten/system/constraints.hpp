@@ -44,8 +44,9 @@ class Constraints {
     /// only shift).
     Constraints centred(const std::vector<double>& centre) const;
 
-    /// The constraints without those that follow from the others. Throws InvalidInput when more
-    /// than `controls` are left, or some contradict each other: then a smallest such set is named.
+    /// The constraints without those that follow from the others. Throws ConstraintConflict when
+    /// more than `controls` are left, or some contradict each other: then a smallest such set is
+    /// named.
     Constraints independent(Index controls) const;
 
   private:

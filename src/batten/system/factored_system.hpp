@@ -20,6 +20,7 @@ class BandedSystem : public NormalSystem {
     void apply(const PointSet& x, PointSet& y) const override;
     std::vector<double> diagonal() const override { return gram_.diagonal(); }
     std::vector<const BandedMatrix*> factors() const override { return {&gram_}; }
+    void add_roughness(double lambda, int order) override;
 
   private:
     BandedMatrix gram_;
@@ -41,6 +42,7 @@ class KroneckerSystem : public NormalSystem {
     void apply(const PointSet& x, PointSet& y) const override;
     std::vector<double> diagonal() const override;
     std::vector<const BandedMatrix*> factors() const override;
+    void add_roughness(double lambda, int order) override;
 
   private:
     std::vector<Collocation> collocations_;

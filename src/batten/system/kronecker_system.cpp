@@ -2,6 +2,7 @@
 
 #include <batten/core/vector_clones.hpp>
 #include <batten/system/moments.hpp>
+#include <batten/system/roughness.hpp>
 
 #include <algorithm>
 
@@ -192,6 +193,11 @@ std::vector<const BandedMatrix*> KroneckerSystem::factors() const {
     std::vector<const BandedMatrix*> result;
     for (const BandedMatrix& gram : grams_) result.push_back(&gram);
     return result;
+}
+
+void KroneckerSystem::add_roughness(double lambda, int order) {
+    for (std::size_t k = 0; k < grams_.size(); ++k)
+        grams_[k].add(lambda * grams_[k].total(), roughness_matrix(axes_[k], order));
 }
 
 } // namespace batten

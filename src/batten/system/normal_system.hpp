@@ -17,7 +17,6 @@ namespace batten {
 class NormalSystem {
   public:
     virtual ~NormalSystem() = default;
-    NormalSystem(const NormalSystem&) = delete;
     NormalSystem& operator=(const NormalSystem&) = delete;
 
     /// Free control points N of the spline.
@@ -36,6 +35,12 @@ class NormalSystem {
     /// samples.
     virtual std::vector<const BandedMatrix*> factors() const { return {}; }
 
+    /// Adds lambda times the roughness to what is minimised, the mean of the weighted squares: for
+    /// a sequence or cloud lambda times the integral of the squared derivatives of the given order
+    /// along each axis, so A^T D A gets lambda W R for the total weight W; for a grid each axis's
+    /// matrix its own [XiaoLiRuppert2013], so that the system stays a Kronecker product.
+    virtual void add_roughness(double lambda, int order) = 0;
+
     /// The gradient A^T D (Q - A P) at control points relative to the centre.
     PointSet gradient(const PointSet& control) const;
     /// Sum over the samples of weight |Q - A P|^2, up to the sum of weight |Q - centre|^2 that
@@ -47,6 +52,7 @@ class NormalSystem {
     Index sample_count() const { return sample_count_; }
 
   protected:
+    NormalSystem(const NormalSystem&) = default;
     NormalSystem(std::vector<KnotVector> axes, std::vector<double> centre);
 
     std::vector<KnotVector> axes_;

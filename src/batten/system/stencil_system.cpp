@@ -1,8 +1,10 @@
 #include <batten/system/stencil_system.hpp>
 
 #include <batten/core/vector_clones.hpp>
+#include <batten/system/roughness.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fmt/format.h>
 
 namespace batten {
@@ -180,6 +182,36 @@ std::vector<double> StencilSystem::diagonal() const {
         if (i == j) result[static_cast<std::size_t>(i)] += value;
     });
     return result;
+}
+
+void StencilSystem::add_roughness(double lambda, int order) {
+    const double weight = total_weight_ > 0 ? total_weight_ : 1;
+    for (std::size_t rough = 0; rough < axes_.size(); ++rough) {
+        std::vector<BandedMatrix> matrices;
+        for (std::size_t k = 0; k < axes_.size(); ++k)
+            matrices.push_back(roughness_matrix(axes_[k], k == rough ? order : 0));
+        add_product(lambda * weight, matrices);
+        axis_grams_[rough].add(lambda * weight, matrices[rough]);
+    }
+}
+
+void StencilSystem::add_product(double factor, const std::vector<BandedMatrix>& matrices) {
+    for (Index place = 0; place < width_; ++place)
+        for (Index i = 0; i < size(); ++i) {
+            double value = factor;
+            Index rest = i;
+            for (std::size_t k = shape_.size(); k-- > 0 && value != 0;) {
+                const Index n = shape_[k];
+                const Index row = rest % n;
+                rest /= n;
+                const Index step = offsets_[static_cast<std::size_t>(place)][k];
+                Index from = step >= 0 ? row : row + step;
+                if (axes_[k].closed()) from = (from + n) % n;
+                const bool outside = !axes_[k].closed() && (from < 0 || row + step >= n);
+                value *= outside ? 0 : matrices[k].at(from, static_cast<int>(std::abs(step)));
+            }
+            at(place, i) += value;
+        }
 }
 
 } // namespace batten

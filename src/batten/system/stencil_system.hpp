@@ -17,6 +17,7 @@ class StencilSystem : public NormalSystem {
 
     void apply(const PointSet& x, PointSet& y) const override;
     std::vector<double> diagonal() const override;
+    void add_roughness(double lambda, int order) override;
 
     /// Per axis the matrix sum of w b b^T of the samples' B-splines on that axis alone: their
     /// Kronecker product over total_weight() comes near A^T D A when the samples are spread evenly.
@@ -37,6 +38,7 @@ class StencilSystem : public NormalSystem {
     }
     void add_sample(std::span<const double> point, const double* parameter, double weight);
     void add_cells(const Points& points, const Points& parameters, std::span<const double> weights);
+    void add_product(double factor, const std::vector<BandedMatrix>& matrices);
     void merge(const CellSums& sums);
     void apply_plane(const double* x, double* y) const;
 

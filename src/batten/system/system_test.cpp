@@ -190,6 +190,7 @@ class Counting : public NormalSystem {
     }
     std::vector<double> diagonal() const override { return inner_.diagonal(); }
     std::vector<const BandedMatrix*> factors() const override { return inner_.factors(); }
+    void add_roughness(double, int) override { FAIL() << "not used here"; }
     mutable Index applied = 0;
 
   private:

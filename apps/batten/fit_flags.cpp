@@ -1,0 +1,141 @@
+#include "fit_flags.hpp"
+
+namespace batten::command {
+
+namespace {
+
+void add_shape_flags(CLI::App& fit, FitFlags& flags) {
+    fit.add_option("--control-points,-n", flags.control_points,
+                   "Number of control points: 30, 20x30 or 8x8x8")
+        ->group("Size");
+    fit.add_option("--tolerance,-t", flags.tolerance,
+                   "Every sample within this distance, with as few control points as it takes")
+        ->group("Size");
+    fit.add_option("--tolerances", flags.tolerances, "File of one tolerance per sample")
+        ->group("Size");
+    fit.add_option("--max-control-points", flags.max_control_points,
+                   "Not more than these for a tolerance")
+        ->check(CLI::PositiveNumber)
+        ->group("Size");
+    fit.add_option("--corners", flags.corners,
+                   "auto, none, or a list of samples: where a curve may bend sharply")
+        ->group("Size")
+        ->capture_default_str();
+    fit.add_option("--degree,-p", flags.degree, "Degree 1 to 9, one for all axes or one each")
+        ->delimiter(',')
+        ->group("Shape")
+        ->capture_default_str();
+    fit.add_option(
+           "--closed", flags.closed,
+           "Closed curve, at its seam as smooth as elsewhere or --closed=C0, C1, ...; for a "
+           "grid the closed axes, as --closed=0 or --closed=0,1")
+        ->expected(0, 1)
+        ->group("Shape")
+        ->default_str("all");
+    fit.add_option("--parametrize", flags.parametrize, "chord, centripetal or uniform")
+        ->group("Shape")
+        ->capture_default_str();
+    fit.add_option("--parameters", flags.parameters,
+                   "File of parameters, one per sample; for a grid one file per axis")
+        ->group("Shape");
+    fit.add_option("--project", flags.project,
+                   "A cloud's parameters: its coordinates xy, xz or yz, or in its best plane")
+        ->group("Shape");
+    fit.add_option("--knots", flags.knots,
+                   "data (NURBS Book 9.69), uniform, a text file of one axis's knots, or a spline "
+                   ".json whose knots to take")
+        ->group("Shape")
+        ->capture_default_str();
+    fit.add_option("--grid", flags.grid, "Grid shape of the points, last axis fastest: 81x81")
+        ->group("Points");
+    fit.add_flag("--heights", flags.heights, "The file is a table of heights over a regular grid")
+        ->group("Points");
+    fit.add_option("--spacing", flags.spacing, "Grid distances DX,DY of --heights")
+        ->group("Points")
+        ->capture_default_str();
+    fit.add_option("--weights", flags.weights, "File of one positive weight per sample")
+        ->group("Points");
+}
+
+void add_method_flags(CLI::App& fit, FitFlags& flags) {
+    fit.add_option("--method,-m", flags.method,
+                   "auto, direct, or an iteration: see `batten methods`")
+        ->group("Method")
+        ->capture_default_str();
+    fit.add_option("--initial", flags.initial,
+                   "data, zero, or a file of control points or a spline .json")
+        ->group("Method")
+        ->capture_default_str();
+    fit.add_option("--set", flags.set, "The method's own numbers: name=value")->group("Method");
+    fit.add_option("--moving", flags.moving, "Local PIA: only these control points move: 3,4,5")
+        ->group("Method");
+    fit.add_option("--interpolate", flags.interpolate,
+                   "Samples to hit exactly: ends, a list 0,20,40, or a file of indices")
+        ->group("Must hold");
+    fit.add_option("--tangents", flags.tangents,
+                   "File of directions to have exactly: sample, x, y[, z] per line (for a grid: "
+                   "sample, axis, x, y, z)")
+        ->group("Must hold");
+    fit.add_option("--derivatives", flags.derivatives,
+                   "The same for first derivatives, length and all, by parameters over [0, 1]")
+        ->group("Must hold");
+    fit.add_option("--boundary", flags.boundaries,
+                   "A surface's boundary: u0=FILE, u1=, v0=, v1= (spline .json); may be repeated")
+        ->group("Must hold");
+    fit.add_option("--preserve", flags.preserve,
+                   "convexity, or no more inflections than the samples (with a size: than the "
+                   "initial control polygon)")
+        ->group("Must hold");
+    fit.add_flag("--robust", flags.robust, "Find outliers, list them and leave them out")
+        ->group("Noise");
+    fit.add_option("--smooth", flags.smooth,
+                   "Smoothing: auto (generalised cross-validation), or the factor of the roughness")
+        ->group("Noise");
+    fit.add_option("--smooth-order", flags.smooth_order,
+                   "Derivative whose square is the roughness, 2 or 3")
+        ->check(CLI::IsMember({2, 3}))
+        ->group("Noise")
+        ->capture_default_str();
+    fit.add_option("--max-iterations", flags.max_iterations, "Most iterations")
+        ->check(CLI::NonNegativeNumber)
+        ->group("Stop")
+        ->capture_default_str();
+    fit.add_option("--stop-gradient", flags.stop_gradient,
+                   "Stop at this Frobenius norm of A^T(Q - AP)")
+        ->check(CLI::NonNegativeNumber)
+        ->group("Stop");
+    fit.add_option("--stop-relative-gradient", flags.stop_relative_gradient,
+                   "Stop at this part of its first value (1e-10 when no other stop is given)")
+        ->check(CLI::NonNegativeNumber)
+        ->group("Stop");
+    fit.add_option("--stop-deviation", flags.stop_deviation, "Stop when every sample is this close")
+        ->check(CLI::NonNegativeNumber)
+        ->group("Stop");
+    fit.add_option("--threads", flags.threads, "Threads; 0 takes every core")
+        ->check(CLI::NonNegativeNumber)
+        ->group("Machine")
+        ->capture_default_str();
+    fit.add_flag("--quiet,-q", flags.quiet, "Say nothing unless something is wrong")
+        ->group("Machine");
+}
+
+void add_output_flags(CLI::App& fit, FitFlags& flags) {
+    fit.add_option("POINTS", flags.points,
+                   "Points: .csv .txt .xyz .dat .npy, or - for standard input")
+        ->required();
+    fit.add_option("--output,-o", flags.outputs, "Write the spline: .json .svg; may be repeated")
+        ->group("Output");
+    fit.add_option("--summary", flags.summary, "Write the report as JSON")->group("Output");
+    fit.add_flag("--history", flags.history, "Keep every iteration in the summary")
+        ->group("Output");
+}
+
+} // namespace
+
+void add_flags(CLI::App& fit, FitFlags& flags) {
+    add_output_flags(fit, flags);
+    add_shape_flags(fit, flags);
+    add_method_flags(fit, flags);
+}
+
+} // namespace batten::command

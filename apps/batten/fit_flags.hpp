@@ -1,0 +1,62 @@
+#pragma once
+
+#include <batten/fit/fit.hpp>
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace batten::command {
+
+/// The flags of `batten fit` as typed.
+struct FitFlags {
+    std::string points;
+    std::vector<std::string> outputs;
+    std::string summary;
+    bool history = false;
+    std::string grid;
+    bool heights = false;
+    std::string spacing = "1,1";
+    std::string control_points;
+    std::vector<int> degree{3};
+    std::string closed;
+    std::string parametrize = "chord";
+    std::vector<std::string> parameters;
+    std::string knots = "data";
+    std::string method = "auto";
+    std::string initial = "data";
+    std::vector<std::string> set;
+    Index max_iterations = StopRule{}.max_iterations;
+    double stop_gradient = 0;
+    double stop_relative_gradient = 0;
+    double stop_deviation = 0;
+    std::string weights;
+    double tolerance = 0;
+    std::string tolerances;
+    Index max_control_points = 0;
+    std::string corners = "auto";
+    std::string interpolate;
+    std::string tangents;
+    std::string derivatives;
+    std::vector<std::string> boundaries;
+    std::string preserve;
+    std::string moving;
+    std::string smooth;
+    int smooth_order = 2;
+    bool robust = false;
+    std::string project;
+    int threads = 0;
+    bool quiet = false;
+};
+
+/// Adds the flags to the subcommand.
+void add_flags(CLI::App& fit, FitFlags& flags);
+
+/// The points that the flags name, with their grid, weights and notes.
+Samples samples_of(const FitFlags& flags);
+
+/// What the flags ask of the fit; `fit` knows which were given. Throws InvalidInput naming the
+/// flag.
+FitOptions options_of(const FitFlags& flags, const CLI::App& fit, const Samples& samples);
+
+} // namespace batten::command

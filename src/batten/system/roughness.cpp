@@ -1,0 +1,57 @@
+#include <batten/system/roughness.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace batten {
+
+namespace {
+
+/// Nodes and weights of Gauss-Legendre quadrature with `count` points on [-1, 1]: Newton's method
+/// on the Legendre polynomial.
+std::vector<std::pair<double, double>> gauss_rule(int count) {
+    std::vector<std::pair<double, double>> rule;
+    for (int i = 0; i < count; ++i) {
+        double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5));
+        double slope = 0;
+        for (int round = 0; round < 50; ++round) {
+            double before = 1;
+            double now = x;
+            for (int k = 2; k <= count; ++k)
+                before = std::exchange(now, ((2 * k - 1) * x * now - (k - 1) * before) / k);
+            slope = count * (x * now - before) / (x * x - 1);
+            const double step = now / slope;
+            x -= step;
+            if (std::abs(step) < 1e-16) break;
+        }
+        rule.emplace_back(x, 2 / ((1 - x * x) * slope * slope));
+    }
+    return rule;
+}
+
+} // namespace
+
+BandedMatrix roughness_matrix(const KnotVector& knots, int order) {
+    const int p = knots.degree();
+    const Index n = knots.free_count();
+    BandedMatrix matrix(n, p, knots.closure());
+    const auto rule = gauss_rule(p + 1);
+    for (Index span = p; span < knots.control_count(); ++span) {
+        const double half = (knots[span + 1] - knots[span]) / 2;
+        if (!(half > 0)) continue;
+        const double middle = (knots[span + 1] + knots[span]) / 2;
+        for (const auto& [x, weight] : rule) {
+            const BasisValues b = basis_derivatives(knots, span, middle + half * x, order);
+            for (int i = 0; i <= p; ++i)
+                for (int j = i; j <= p; ++j)
+                    matrix.at((span - p + i) % n, j - i) += weight * half *
+                                                            b[static_cast<std::size_t>(i)] *
+                                                            b[static_cast<std::size_t>(j)];
+        }
+    }
+    return matrix;
+}
+
+} // namespace batten
