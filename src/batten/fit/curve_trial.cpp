@@ -21,6 +21,7 @@ PointSet solve(const CurveTask& task, const CurveTrial& trial) {
     const auto origin = task.samples.points[0];
     BandedSystem system(trial.knots, {origin.begin(), origin.end()});
     system.add(trial.parameters, task.samples.points, trial.weights);
+    if (task.roughness > 0) system.add_roughness(task.roughness, 2);
     Constraints exact(task.samples.dim());
     if (task.hold.equalities())
         exact = held_constraints({trial.knots}, task.samples, {{trial.parameters}, {}}, task.hold)

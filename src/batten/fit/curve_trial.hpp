@@ -19,6 +19,9 @@ struct CurveTask {
     HoldOptions hold{};
     /// Inflections that the control polygon may have; negative: any number.
     Index most_inflections = -1;
+    /// Factor of the roughness (NormalSystem::add_roughness, order 2) that keeps in rein what no
+    /// sample holds; 0: none.
+    double roughness = 0;
     /// Parameters that follow from the data alone; the corrected ones may have been led astray by a
     /// coarse curve.
     std::vector<double> parameters{};

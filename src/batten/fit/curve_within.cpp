@@ -2,12 +2,10 @@
 #include <batten/fit/corners.hpp>
 #include <batten/fit/curve_knots.hpp>
 #include <batten/fit/curve_tolerance.hpp>
+#include <batten/fit/curve_verdict.hpp>
 #include <batten/fit/held.hpp>
 #include <batten/fit/tolerance.hpp>
 #include <batten/fit/within.hpp>
-#include <batten/measure/between_samples.hpp>
-#include <batten/measure/inflections.hpp>
-#include <batten/shape/polygon.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -121,11 +119,6 @@ CurveWithin smooth_fit(CurveTask task, double noise, Index most) {
     return smooth;
 }
 
-/// Inflections that the samples show, turns smaller than `height` left out.
-Index shown_inflections(const CurveTask& task, double height) {
-    return visible_inflections(task.samples.points, height, task.closure);
-}
-
 /// Inflections that the shape to be kept allows; -1: any number.
 Index allowed_inflections(const CurveTask& task, double tolerance) {
     if (task.hold.preserve == Preserve::nothing) return -1;
@@ -155,9 +148,12 @@ CurveTask task_of(const OneTurn& turn, const FitOptions& options,
     if (task.degree < 1 || task.degree > max_degree)
         throw InvalidInput(
             fmt::format("axis 0: degree {} is outside 1 to {}", task.degree, max_degree));
-    if (samples.size() < task.degree + 1)
-        throw InvalidInput(fmt::format("axis 0: degree {} needs at least {} samples, got {}",
-                                       task.degree, task.degree + 1, samples.size()));
+    const bool closed = task.closure == Closure::closed;
+    const int least = closed ? 2 * task.degree + 2 : task.degree + 1;
+    if (samples.size() < least)
+        throw InvalidInput(fmt::format("axis 0: {}degree {} needs at least {} samples, got {}",
+                                       closed ? "closed, " : "", task.degree, least,
+                                       samples.size()));
     check_held(task.hold, samples, {task.degree}, {task.closure});
     if (shape.seam_continuity > task.degree - 1)
         throw InvalidInput(fmt::format("closed: continuity C{} at the seam is more than degree {} "
@@ -172,30 +168,49 @@ CurveTask task_of(const OneTurn& turn, const FitOptions& options,
     return task;
 }
 
-constexpr Index most_for_inflections = 20000; // samples: beyond it they show noise
-
-/// Inflections of a planar curve, turns smaller than `height` left out.
-Index curve_inflections(const CurveTrial& trial, double height) {
-    const std::vector<double> breaks = trial.knots.breakpoints();
-    constexpr Index steps = 32; // per piece
-    PointSet t(static_cast<Index>(breaks.size() - 1) * steps + 1, 1);
-    for (Index i = 0; i < t.size(); ++i) {
-        const Index piece = std::min(i / steps, static_cast<Index>(breaks.size()) - 2);
-        const auto b = static_cast<std::size_t>(piece);
-        t(i, 0) = breaks[b] +
-                  (breaks[b + 1] - breaks[b]) * static_cast<double>(i - piece * steps) / steps;
+/// The integral of the squared second derivative that the samples show where they bend by more
+/// than twice the tolerance, for parameters over [0, 1].
+double shown_roughness(const CurveTask& task) {
+    const Points& q = task.samples.points;
+    const std::vector<double>& t = task.parameters;
+    double sum = 0;
+    for (Index i = 1; i + 1 < q.size(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double before = t[k] - t[k - 1];
+        const double after = t[k + 1] - t[k];
+        if (!(before > 0) || !(after > 0)) continue;
+        double square = 0;
+        for (Index d = 0; d < q.dim(); ++d) {
+            const double chord = (after * q(i - 1, d) + before * q(i + 1, d)) / (before + after);
+            square += (q(i, d) - chord) * (q(i, d) - chord);
+        }
+        const double bend = std::max(0.0, std::sqrt(square) - 2 * task.tolerance[k]);
+        const double second = 2 * bend / (before * after);
+        sum += second * second * (before + after) / 2;
     }
-    return visible_inflections(evaluate(spline_of(trial), t), height, trial.knots.closure());
+    return sum;
 }
 
-bool can_show_inflections(const CurveTask& task) {
-    return task.samples.dim() == 2 && task.samples.size() <= most_for_inflections;
-}
-
-/// Height of the turns that count as inflections: those that a kept shape may not have, or smaller
-/// ones that would still be seen.
-double visible_height(const CurveTask& task, double tolerance) {
-    return task.most_inflections >= 0 ? tolerance : tolerance / 4;
+/// Where knots stand nearly as close as samples, a curve may be within the tolerance and wild
+/// between them: the search is done again with a little roughness counted, such that what the
+/// samples show of it costs a small part of the tolerance.
+void calm_down(CurveTask& task, const ToleranceOptions& options, Index most, double tolerance,
+               CurveWithin& found) {
+    if (found.met && between(task, found.trial) <= 1) return;
+    const double shown = std::max(shown_roughness(task), 1e-300);
+    const double noise_part = noise_level(task.samples.points) / tolerance;
+    if (noise_part < 0.3 || task.samples.size() > 5000) return; // no noise to be wild about
+    for (double part : {0.1, 1.0}) {
+        CurveTask calmer = task;
+        calmer.roughness = part * tolerance * tolerance / shown;
+        CurveWithin again = few_knots(calmer, options, most);
+        const bool better =
+            again.met && (!found.met || between(task, again.trial) < between(task, found.trial));
+        if (!better) continue;
+        found = std::move(again);
+        task.roughness = calmer.roughness;
+        if (between(task, found.trial) <= wild_part) return;
+    }
 }
 
 constexpr Index few_enough = 40; // control points for which a second search takes little time
@@ -207,6 +222,7 @@ void take_out_inflections(const CurveTask& task, const ToleranceOptions& options
     const double height = visible_height(task, tolerance);
     const Index shown = shown_inflections(task, height);
     if (curve_inflections(found.trial, height) <= shown) return;
+    if (near_interpolation(task, found)) return; // it bends with the samples' noise
     CurveTask shaped = task;
     shaped.most_inflections = shown;
     const auto accepted = [&](CurveWithin again) {
@@ -219,54 +235,6 @@ void take_out_inflections(const CurveTask& task, const ToleranceOptions& options
     if (again.met) thin_out(shaped, again);
     if (accepted(std::move(again)) || found.trial.knots.free_count() > few_enough) return;
     accepted(few_knots(shaped, options, most)); // from nothing: other knots may do
-}
-
-/// Counts the inflections of curve and samples where they can be told.
-void count_inflections(const CurveTask& task, const CurveWithin& found, FitReport& report) {
-    if (!can_show_inflections(task)) return;
-    const double height = visible_height(task, report.tolerance);
-    report.curve_inflections = curve_inflections(found.trial, height);
-    report.data_inflections = shown_inflections(task, height);
-    if (task.most_inflections >= 0)
-        report.inflections = inflection_count(found.trial.control, task.closure);
-}
-
-/// The verdict in words and what it rests on.
-void judge(const CurveTask& task, const CurveWithin& found, double noise,
-           const std::string& why_not, FitReport& report) {
-    bool met = report.termination == Termination::tolerance_met;
-    const BetweenSamples between = check_between(spline_of(found.trial), task.samples.points,
-                                                 found.trial.parameters, task.tolerance);
-    report.between_samples = between.excess;
-    count_inflections(task, found, report);
-    const bool wild = met && between.excess > wild_part;
-    if (wild) {
-        met = false;
-        report.termination = Termination::tolerance_not_met;
-    }
-    const Index n = found.trial.knots.free_count();
-    const Index m = task.samples.size();
-    const bool near = static_cast<double>(n) > smooth_part * static_cast<double>(m);
-    report.noise_level = near || !met ? noise : 0;
-    report.verdict = met    ? "met"
-                     : wild ? "not met: every sample is within, but the curve is wild between some"
-                            : why_not;
-    if (met && near)
-        report.verdict += fmt::format(", but it nearly interpolates: {} control points for {} "
-                                      "samples; noise level seen in them {:.3g}",
-                                      n, m, noise);
-    if (!between.good && (met || wild))
-        report.verdict +=
-            between.loops > 0
-                ? fmt::format("; between samples {} and the next the curve has a loop",
-                              between.worst_sample)
-                : fmt::format(
-                      "; between samples {} and the next the curve strays {:.2g} times as far as "
-                      "allowed",
-                      between.worst_sample, between.excess);
-    if (met && report.curve_inflections > report.data_inflections)
-        report.verdict += fmt::format("; the curve has {} inflections, the samples show {}",
-                                      report.curve_inflections, report.data_inflections);
 }
 
 } // namespace
@@ -295,6 +263,7 @@ FitResult curve_within(const Samples& given, const FitOptions& options,
     const bool hopeless = samples.size() > 5000 && noise > smallest;
     CurveWithin found =
         hopeless ? smooth_fit(task, noise, most) : few_knots(task, options.tolerance, most);
+    if (!hopeless) calm_down(task, options.tolerance, most, smallest, found);
     if (!hopeless) take_out_inflections(task, options.tolerance, most, smallest, found);
     const bool met = found.met && !hopeless;
     if (!met && !hopeless && noise > smallest / 3 &&

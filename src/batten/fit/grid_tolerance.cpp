@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace batten {
 
@@ -102,8 +103,21 @@ class Search {
     Search(const GridTask& task, std::vector<Spread> spreads)
         : task_(task), spreads_(std::move(spreads)), ascending_(ascending(task.parameters)) {}
 
-    /// Largest distance over tolerance with n control points per axis.
+    /// Largest distance over tolerance with n control points per axis; remembered.
     double operator()(const std::vector<Index>& n) {
+        if (const auto known = known_.find(n); known != known_.end() && last_size_ != n)
+            if (known->second > 1) return known->second;
+        last_size_ = n;
+        return known_[n] = attempt(n);
+    }
+
+    Spline last;
+    double last_worst = std::numeric_limits<double>::infinity();
+    bool met = false;
+    std::string conflict;
+
+  private:
+    double attempt(const std::vector<Index>& n) {
         if (task_.cancelled && task_.cancelled()) throw Cancelled("the fit was cancelled");
         std::vector<KnotVector> axes;
         for (std::size_t k = 0; k < n.size(); ++k) {
@@ -137,12 +151,6 @@ class Search {
         }
     }
 
-    Spline last;
-    double last_worst = std::numeric_limits<double>::infinity();
-    bool met = false;
-    std::string conflict;
-
-  private:
     /// Directly on a grid; on a cloud by preconditioned conjugate gradients, which hold still what
     /// no sample reaches.
     PointSet solve(const NormalSystem& system) const {
@@ -159,6 +167,8 @@ class Search {
 
     const GridTask& task_;
     std::vector<Spread> spreads_;
+    std::map<std::vector<Index>, double> known_;
+    std::vector<Index> last_size_;
     std::vector<std::vector<double>> ascending_;
 };
 

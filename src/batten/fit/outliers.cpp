@@ -1,114 +1,16 @@
 #include <batten/fit/outliers.hpp>
 
-#include <batten/basis/place_knots.hpp>
-#include <batten/fit/plan.hpp>
+#include <batten/fit/robust_fit.hpp>
 #include <batten/fit/tolerance.hpp>
-#include <batten/iterate/conjugate_gradients.hpp>
-#include <batten/iterate/iterate.hpp>
 #include <batten/measure/deviation.hpp>
-#include <batten/solve/direct.hpp>
-#include <batten/system/collocation.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 
 namespace batten {
 
 namespace {
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<Index>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// A third as many control points as samples along each axis, evenly among them.
-std::vector<KnotVector> robust_knots(const Samples& samples, const Parameters& parameters,
-                                     const std::vector<int>& degree,
-                                     const std::vector<Closure>& closures) {
-    std::vector<KnotVector> axes;
-    for (std::size_t k = 0; k < degree.size(); ++k) {
-        const Index least = 2 * degree[k] + 1;
-        const bool closed = closures[k] == Closure::closed;
-        if (parameters.is_scattered()) {
-            const double along = std::pow(static_cast<double>(samples.size()),
-                                          1 / static_cast<double>(degree.size()));
-            const PointSet box = bounding_box(parameters.scattered);
-            const auto axis = static_cast<Index>(k);
-            axes.push_back(uniform_knots(degree[k], std::max(least, static_cast<Index>(along / 3)),
-                                         closed ? 0 : box(0, axis), closed ? 1 : box(1, axis),
-                                         closures[k]));
-            continue;
-        }
-        std::vector<double> t = parameters.axes[k]; // distinct: runs of one value count once
-        t.erase(std::unique(t.begin(), t.end()), t.end());
-        const auto m = static_cast<Index>(t.size());
-        const Index n = std::min(m, std::max(least, m / 3));
-        axes.push_back(knots_from_parameters(t, degree[k], n, closures[k]));
-    }
-    return axes;
-}
-
-PointSet fitted_values(const Spline& spline, const Parameters& parameters) {
-    if (parameters.is_scattered()) return evaluate(spline, parameters.scattered);
-    return evaluate_grid(spline, parameters.axes);
-}
-
-Spline least_squares_spline(const std::vector<KnotVector>& axes, const Samples& samples,
-                            const Parameters& parameters) {
-    const auto system = assemble(axes, samples, parameters);
-    PointSet control(system->size(), system->dim());
-    if (parameters.is_scattered()) {
-        ConjugateGradients cg(*system, Preconditioner::axes);
-        iterate(cg, control, {.max_iterations = 200, .relative_gradient = 1e-8});
-    } else {
-        control = solve_direct(*system);
-    }
-    return Spline::from_free(axes, uncentred(control, system->centre()));
-}
-
-/// Tukey's weight: nothing beyond `reach`.
-double weight(double residual, double reach) {
-    const double part = 1 - residual * residual / (reach * reach);
-    return part > 0 ? part * part : 0;
-}
-
-/// The robust fit to all samples: the reach of the loss shrinks from the largest residual
-/// to 4.685 times their scale, so that the farthest let go first and what they pulled along falls
-/// back. Residuals below a third of `least` are taken for exact.
-Spline robust_spline(const Samples& samples, const Parameters& parameters,
-                     const std::vector<KnotVector>& axes, double least) {
-    constexpr int most_rounds = 60;
-    constexpr int last_rounds = 6; // at the final reach
-    Samples pseudo = samples;
-    Spline spline;
-    double reach = 0;
-    int at_last_reach = 0;
-    for (int round = 0; round < most_rounds && at_last_reach < last_rounds; ++round) {
-        spline = least_squares_spline(axes, pseudo, parameters);
-        const PointSet fitted = fitted_values(spline, parameters);
-        std::vector<double> residual(static_cast<std::size_t>(samples.size()));
-        for (Index i = 0; i < samples.size(); ++i)
-            residual[static_cast<std::size_t>(i)] = distance(samples.points[i], fitted[i]);
-        const double final_reach = 4.685 * std::max(1.4826 * median(residual), least / 3);
-        reach = round == 0 ? *std::ranges::max_element(residual) : 0.75 * reach;
-        if (reach <= final_reach) {
-            reach = final_reach;
-            ++at_last_reach;
-        }
-        PointSet next = fitted;
-        for (Index i = 0; i < samples.size(); ++i) {
-            const double w = weight(residual[static_cast<std::size_t>(i)], reach);
-            for (Index d = 0; d < samples.dim(); ++d)
-                next(i, d) += w * (samples.points(i, d) - fitted(i, d));
-        }
-        pseudo.points = std::move(next);
-    }
-    return spline;
-}
 
 /// Median residual of the samples around each one: up to 4 places away along a sequence, 2 along
 /// a grid's axes.
@@ -159,30 +61,6 @@ std::vector<double> around(const Parameters& parameters, const std::vector<KnotV
     return result;
 }
 
-/// Chord lengths of a sequence, each at most three times the median of those around: a sample far
-/// off does not stretch its place.
-std::vector<double> bounded_chords(const Points& q, Closure closure) {
-    const Index m = q.size();
-    const Index count = closure == Closure::closed ? m : m - 1;
-    std::vector<double> chord;
-    for (Index i = 0; i < count; ++i) chord.push_back(distance(q[i], q[(i + 1) % m]));
-    std::vector<double> t{0};
-    for (Index i = 0; i < count; ++i) {
-        const Index from = std::max<Index>(0, i - 8);
-        const Index to = std::min(count, i + 9);
-        const double usual = median({chord.begin() + from, chord.begin() + to});
-        t.push_back(t.back() +
-                    std::min(chord[static_cast<std::size_t>(i)],
-                             usual > 0 ? 3 * usual : chord[static_cast<std::size_t>(i)]));
-    }
-    const double total = t.back();
-    if (!(total > 0)) return parametrize_sequence(q, Parametrization::chord, closure);
-    t.resize(static_cast<std::size_t>(m));
-    for (double& x : t) x /= total;
-    if (closure == Closure::open) t.back() = 1;
-    return t;
-}
-
 std::vector<bool> protected_samples(const Samples& samples, const HoldOptions& hold) {
     std::vector<bool> result(static_cast<std::size_t>(samples.size()), false);
     const auto protect = [&](Index i) {
@@ -191,16 +69,6 @@ std::vector<bool> protected_samples(const Samples& samples, const HoldOptions& h
     for (Index i : hold.interpolate) protect(i);
     for (const HeldTangent& tangent : hold.tangents) protect(tangent.sample);
     return result;
-}
-
-Parameters parameters_of(const Samples& samples, const FitOptions& options) {
-    if (options.shape.parameters) return *options.shape.parameters;
-    if (samples.grid.empty() && options.shape.parametrization != Parametrization::uniform)
-        return {{bounded_chords(samples.points, options.shape.closures[0])}, {}};
-    ShapeOptions shape = options.shape;
-    shape.knots.clear();
-    shape.control_points = samples.shape();
-    return choose_parameters(samples, shape, plan_axes(samples, shape));
 }
 
 /// The residual that a sample may have in any case: its tolerance, or a small part of the data's
@@ -220,14 +88,10 @@ struct Judgement {
 };
 
 Judgement judge(const Samples& samples, const FitOptions& options) {
-    const Parameters parameters = parameters_of(samples, options);
+    const Parameters parameters = robust_parameters(samples, options);
     const bool cloud = parameters.is_scattered();
-    const Index axes = parameters.axis_count();
-    const std::vector<int> degree = degrees_per_axis(options.shape, axes);
-    std::vector<Closure> closures = options.shape.closures;
-    if (closures.size() == 1) closures.resize(static_cast<std::size_t>(axes), closures[0]);
     const std::vector<double> least = least_residuals(samples, options);
-    const std::vector<KnotVector> knots = robust_knots(samples, parameters, degree, closures);
+    const std::vector<KnotVector> knots = robust_knots(samples, parameters, options);
     Judgement result{
         robust_spline(samples, parameters, knots, *std::ranges::min_element(least)), {}, 0, {}};
     result.fitted = fitted_values(result.spline, parameters);

@@ -4,11 +4,9 @@
 
 namespace batten {
 
-/// Samples that lie far from a robust fit to all: Tukey's loss by pseudo-values
-/// [HollandWelsch1977], with a third as many control points per axis as samples. A sample is an
-/// outlier when it is beyond six times the residuals' scale, beyond five times what its neighbours
-/// are, and beyond the tolerance (or 1e-4 of the data's size where none is stated). Samples with
-/// something to hold never are. Ascending.
+/// Samples that lie far from a robust fit to all (robust_fit.hpp): beyond six times the residuals'
+/// scale, beyond five times what their neighbours are, and beyond the tolerance (or 1e-4 of the
+/// data's size where none is stated). Samples with something to hold never do. Ascending.
 std::vector<Index> find_outliers(const Samples& samples, const FitOptions& options);
 
 /// A fit to the samples without some: of a grid these are replaced by the robust fit's values.
