@@ -15,6 +15,11 @@ namespace batten::command {
 
 namespace {
 
+/// A file's name without folder and extension.
+std::string title_of(const std::string& path) {
+    return path == "-" ? "points" : std::filesystem::path(path).stem().string();
+}
+
 void run(const FitFlags& flags, const CLI::App& fit_app) {
     method_entry(flags.method);
     for (const std::string& output : flags.outputs) check_output(output);
@@ -37,9 +42,18 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     if (!result.report.usable())
         throw SolverError(
             "the iteration broke down: numbers left the finite range; nothing was written");
+    const std::vector<double> deviations =
+        flags.outputs.empty() && flags.report.empty()
+            ? std::vector<double>()
+            : parametric_deviations(result.spline, samples, result.parameters);
+    Scene scene{.spline = result.spline,
+                .samples = &samples,
+                .title = title_of(flags.points),
+                .deviations = &deviations};
+    apply(flags.exported, scene);
     for (const std::string& output : flags.outputs) {
         progress.say("writing " + output);
-        write_spline(output, {result.spline, &samples, flags.points});
+        write_spline(output, scene);
     }
     if (!flags.summary.empty()) write_file(flags.summary, result.report.to_json());
     const bool stdout_taken = flags.summary == "-" || std::ranges::count(flags.outputs, "-") > 0;

@@ -121,10 +121,14 @@ void add_method_flags(CLI::App& fit, FitFlags& flags) {
 
 void add_output_flags(CLI::App& fit, FitFlags& flags) {
     fit.add_option("POINTS", flags.points,
-                   "Points: .csv .txt .xyz .dat .npy, or - for standard input")
+                   "Points: .csv .txt .xyz .dat .npy .ply .obj .stl .las, or - for standard input")
         ->required();
-    fit.add_option("--output,-o", flags.outputs, "Write the spline: .json .svg; may be repeated")
+    fit.add_option("--output,-o", flags.outputs,
+                   "Write the spline: .json .step .iges .svg .obj .g2 .stl .vtu .vts .csv; may be "
+                   "repeated")
         ->group("Output");
+    fit.add_option("--report", flags.report, "Write a page to look at: .html")->group("Output");
+    add_export_flags(fit, flags.exported);
     fit.add_option("--summary", flags.summary, "Write the report as JSON")->group("Output");
     fit.add_flag("--history", flags.history, "Keep every iteration in the summary")
         ->group("Output");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "export_flags.hpp"
+
 #include <batten/fit/fit.hpp>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +15,8 @@ struct FitFlags {
     std::string points;
     std::vector<std::string> outputs;
     std::string summary;
+    std::string report;
+    ExportFlags exported;
     bool history = false;
     std::string grid;
     bool heights = false;

@@ -100,9 +100,18 @@ ShapeOptions shape_options(const FitFlags& flags, bool closed_given, const Sampl
         static_cast<Parametrization>(parse_choice("--parametrize", flags.parametrize, rules));
     if (flags.heights) shape.parametrization = Parametrization::uniform;
     shape.parameters = given_parameters(flags);
+    const bool plain = !shape.parameters && samples.grid.empty();
+    if (flags.project.empty() && plain) {
+        // files of scanned points are clouds: of airborne ones the ground plane is known
+        const std::string kind = extension(flags.points);
+        if (kind == ".las") shape.parameters = projected(samples, Projection::xy);
+        if (kind == ".ply" || kind == ".obj" || kind == ".stl")
+            shape.parameters = projected(samples, Projection::plane);
+    }
     if (!flags.project.empty()) {
-        if (shape.parameters)
-            throw InvalidInput("--project and --parameters: one of them states the parameters");
+        if (!plain)
+            throw InvalidInput(
+                "--project: the parameters are given already, by --parameters or the grid");
         shape.parameters = projected(samples, static_cast<Projection>(parse_choice(
                                                   "--project", flags.project, projections)));
     }

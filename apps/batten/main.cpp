@@ -1,3 +1,4 @@
+#include "cad_loader.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 
@@ -69,6 +70,7 @@ int complain(std::string_view what, int status) {
 
 int main(int argc, char** argv) {
     command::watch_interrupts();
+    command::register_cad_formats();
     CLI::App app("Fits B-spline curves, surfaces and volumes to data points.", "batten");
     app.set_version_flag("--version", "batten " BATTEN_VERSION);
     app.footer("Exit status: 0 done; 2 wrong usage or input; 3 file trouble; 4 written, but the "

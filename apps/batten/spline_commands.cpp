@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "export_flags.hpp"
 #include "parse.hpp"
 
 #include <batten/io/output_file.hpp>
@@ -57,8 +58,7 @@ void compare(const std::string& spline_path, const std::string& points_path) {
                samples.size(), d.maximum, d.worst_sample, d.rms);
 }
 
-void describe_spline(const std::string& path) {
-    const Spline spline = read_spline(path);
+void describe_spline(const std::string& path, const Spline& spline) {
     constexpr const char* kinds[] = {"curve", "surface", "volume"};
     const PointSet box = bounding_box(spline.control_points());
     fmt::print("{}: B-spline {} in dimension {}, {} control points\n", path,
@@ -72,6 +72,10 @@ void describe_spline(const std::string& path) {
     }
     fmt::print("  control points from ({:.6g}) to ({:.6g})\n", fmt::join(box[0], ", "),
                fmt::join(box[1], ", "));
+}
+
+void describe_splines(const std::string& path) {
+    for (const Spline& spline : read_splines(path)) describe_spline(path, spline);
 }
 
 void describe_points(const std::string& path) {
@@ -98,7 +102,7 @@ void add_evaluate(CLI::App& app) {
     };
     CLI::App* sub = app.add_subcommand("evaluate", "Points of a spline");
     auto flags = std::make_shared<Flags>();
-    sub->add_option("SPLINE", flags->spline, "Spline .json")->required();
+    sub->add_option("SPLINE", flags->spline, "Spline .json .step .iges")->required();
     sub->add_option("--samples", flags->samples,
                     "Points per axis, evenly over the domain: 200 or 40x60");
     sub->add_option("--parameters", flags->parameters, "File of parameters, one row per point");
@@ -119,7 +123,7 @@ void add_compare(CLI::App& app) {
     };
     CLI::App* sub = app.add_subcommand("compare", "Distances of points from a spline");
     auto flags = std::make_shared<Flags>();
-    sub->add_option("SPLINE", flags->spline, "Spline .json")->required();
+    sub->add_option("SPLINE", flags->spline, "Spline .json .step .iges")->required();
     sub->add_option("POINTS", flags->points, "Points")->required();
     sub->footer("Example:\n  batten compare part.json measured.csv");
     sub->callback([flags] { compare(flags->spline, flags->points); });
@@ -131,26 +135,37 @@ void add_info(CLI::App& app) {
     sub->add_option("FILE", *file, "A spline or points")->required();
     sub->footer("Example:\n  batten info part.json");
     sub->callback(
-        [file] { extension(*file) == ".json" ? describe_spline(*file) : describe_points(*file); });
+        [file] { is_spline_file(*file) ? describe_splines(*file) : describe_points(*file); });
 }
 
 void add_convert(CLI::App& app) {
     struct Flags {
-        std::string spline;
+        std::vector<std::string> splines;
         std::vector<std::string> outputs;
+        ExportFlags exported;
     };
-    CLI::App* sub = app.add_subcommand("convert", "A spline in another format");
+    CLI::App* sub = app.add_subcommand("convert", "Splines in another format");
     auto flags = std::make_shared<Flags>();
-    sub->add_option("SPLINE", flags->spline, "Spline .json")->required();
+    sub->add_option("SPLINE", flags->splines,
+                    "Splines: .json .step .iges; several where the format holds them")
+        ->required();
     sub->add_option("--output,-o", flags->outputs,
                     "File whose extension names the format; may be repeated")
-        ->required();
-    sub->footer("Example:\n  batten convert part.json -o part.svg");
+        ->required()
+        ->group("Output");
+    add_export_flags(*sub, flags->exported);
+    sub->footer("Examples:\n  batten convert part.json -o part.step --unit m\n"
+                "  batten convert upper.json lower.json -o wing.igs");
     sub->callback([flags] {
         for (const std::string& output : flags->outputs) check_output(output);
-        const Spline spline = read_spline(flags->spline);
-        for (const std::string& output : flags->outputs)
-            write_spline(output, {spline, nullptr, flags->spline});
+        std::vector<Spline> splines;
+        for (const std::string& path : flags->splines)
+            for (Spline& spline : read_splines(path)) splines.push_back(std::move(spline));
+        Scene scene{.spline = splines.front(),
+                    .title = std::filesystem::path(flags->splines.front()).stem().string()};
+        for (std::size_t k = 1; k < splines.size(); ++k) scene.more.push_back(&splines[k]);
+        apply(flags->exported, scene);
+        for (const std::string& output : flags->outputs) write_spline(output, scene);
     });
 }
 

@@ -1,4 +1,5 @@
 #include <batten/core/names.hpp>
+#include <batten/io/exchange_formats.hpp>
 #include <batten/io/output_file.hpp>
 #include <batten/io/point_formats.hpp>
 #include <batten/io/points_file.hpp>
@@ -30,14 +31,28 @@ std::string blank_text(const Points& points, const std::vector<Index>&) {
 constexpr PointFormat point_formats[] = {
     {".csv", parse_text, comma_text}, {".txt", parse_text, blank_text},
     {".xyz", parse_text, blank_text}, {".dat", parse_text, blank_text},
-    {".npy", parse_npy, format_npy},
+    {".npy", parse_npy, format_npy},  {".ply", parse_ply, {}},
+    {".obj", parse_obj, {}},          {".stl", parse_stl, {}},
+    {".las", parse_las, {}},
 };
 
 std::vector<SplineFormat>& registry() {
     static std::vector<SplineFormat> all = {
         {".json", "batten's own exact format",
-         [](const Scene& scene) { return spline_json(scene.spline); }, parse_spline_json},
+         [](const Scene& scene) { return spline_json(scene.spline); },
+         [](const std::filesystem::path& path, const std::string& content) {
+             return std::vector{parse_spline_json(path, content)};
+         }},
         {".svg", "picture of a planar curve, exact cubic Beziers", svg_picture, {}},
+        {".obj", "Wavefront free-form curves and surfaces", obj_text, {}, true},
+        {".g2", "GoTools curves, surfaces and volumes", g2_text, {}, true},
+        {".stl", "triangles of surfaces, within --chord-tolerance", stl_binary, {}, true},
+        {".vts", "VTK structured grid: the spline sampled", vts_text, {}},
+        {".vtu",
+         "VTK unstructured grid: samples with deviation, control net, spline",
+         vtu_text,
+         {}},
+        {".csv", "evaluated points, within --chord-tolerance", evaluated_text, {}},
     };
     return all;
 }
@@ -118,7 +133,11 @@ PointSet read_table(const std::filesystem::path& path) {
 
 void write_points(const std::filesystem::path& path, const Points& points,
                   const std::vector<Index>& grid) {
-    write_file(path, point_format(path).format(points, grid));
+    const PointFormat& format = point_format(path);
+    if (format.format == nullptr)
+        throw InvalidInput(fmt::format("{}: {} files of points are read, not written",
+                                       path.string(), format.extension));
+    write_file(path, format.format(points, grid));
 }
 
 std::span<const SplineFormat> spline_formats() {
@@ -142,7 +161,7 @@ void check_folder(const std::filesystem::path& path) {
             fmt::format("{}: the folder {} does not exist", path.string(), folder.string()));
 }
 
-Spline read_spline(const std::filesystem::path& path) {
+std::vector<Spline> read_splines(const std::filesystem::path& path) {
     const SplineFormat& format = spline_format(path);
     if (!format.read)
         throw InvalidInput(
@@ -150,8 +169,27 @@ Spline read_spline(const std::filesystem::path& path) {
     return format.read(path, read_file(path));
 }
 
+Spline read_spline(const std::filesystem::path& path) {
+    std::vector<Spline> all = read_splines(path);
+    if (all.size() != 1)
+        throw InvalidInput(fmt::format("{}: it holds {} splines, one is needed; batten convert "
+                                       "takes them apart",
+                                       path.string(), all.size()));
+    return std::move(all.front());
+}
+
+bool is_spline_file(const std::filesystem::path& path) {
+    return std::ranges::any_of(registry(), [&](const SplineFormat& format) {
+        return format.read && format.extension == extension(path);
+    });
+}
+
 void write_spline(const std::filesystem::path& path, const Scene& scene) {
-    write_file(path, spline_format(path).write(scene));
+    const SplineFormat& format = spline_format(path);
+    if (!format.several && !scene.more.empty())
+        throw InvalidInput(fmt::format("{}: {} files hold one spline, got {}", path.string(),
+                                       format.extension, scene.more.size() + 1));
+    write_file(path, format.write(scene));
 }
 
 } // namespace batten

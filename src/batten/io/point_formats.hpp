@@ -26,4 +26,17 @@ std::string format_text(const Points& points, char separator);
 NumberArray parse_npy(const std::filesystem::path& path, std::string_view content);
 std::string format_npy(const Points& points, const std::vector<Index>& grid);
 
+/// Vertices of a PLY file: ascii or binary of either byte order, other properties and elements left
+/// out.
+NumberArray parse_ply(const std::filesystem::path& path, std::string_view content);
+
+/// Vertices (`v`) of a Wavefront OBJ file.
+NumberArray parse_obj(const std::filesystem::path& path, std::string_view content);
+
+/// Vertices of an STL file, ascii or binary, each once.
+NumberArray parse_stl(const std::filesystem::path& path, std::string_view content);
+
+/// Points of an uncompressed LAS file, versions 1.2 to 1.4, any point format.
+NumberArray parse_las(const std::filesystem::path& path, std::string_view content);
+
 } // namespace batten

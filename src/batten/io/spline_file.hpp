@@ -20,6 +20,24 @@ struct Scene {
     std::string title{};
     /// Draw the curvature comb: normals as long as the curvature, where a picture can.
     bool curvature_comb = false;
+    /// Distance of each sample from the spline; null where not known.
+    const std::vector<double>* deviations = nullptr;
+    /// Further splines, for formats that hold several.
+    std::vector<const Spline*> more{};
+    /// How far sampled formats may be from the spline; 0: a thousandth of its size.
+    double chord_tolerance = 0;
+    /// Unit of the coordinates for CAD files: mm, cm, m or in.
+    std::string unit = "mm";
+    /// Date in the header of CAD files, 2026-01-31T12:00:00; empty: a fixed one, so that equal
+    /// splines give equal bytes.
+    std::string date{};
+
+    /// All splines, the first one first.
+    std::vector<const Spline*> splines() const {
+        std::vector<const Spline*> all{&spline};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
 };
 
 /// A file format of splines, found by its extension (with the dot, lower case).
@@ -29,7 +47,9 @@ struct SplineFormat {
     /// The file's whole content; throws InvalidInput for a spline that the format cannot hold.
     std::function<std::string(const Scene&)> write;
     /// Parses a file's content (path only for messages); empty when the format is written only.
-    std::function<Spline(const std::filesystem::path&, const std::string&)> read;
+    std::function<std::vector<Spline>(const std::filesystem::path&, const std::string&)> read;
+    /// Whether a file may hold several splines.
+    bool several = false;
 };
 
 /// The formats known now, in order of registration.
@@ -45,8 +65,14 @@ void check_output(const std::filesystem::path& path);
 /// Throws FileError when the folder of `path` does not exist.
 void check_folder(const std::filesystem::path& path);
 
-/// Reads a spline by extension; throws FileError with path and place.
+/// Reads a spline by extension, the only one of its file; throws FileError with path and place.
 Spline read_spline(const std::filesystem::path& path);
+
+/// Reads all splines of a file.
+std::vector<Spline> read_splines(const std::filesystem::path& path);
+
+/// Whether some format of splines that can be read has the file's extension.
+bool is_spline_file(const std::filesystem::path& path);
 
 /// Writes by extension; `-` is JSON to standard output. An existing file is replaced only by a
 /// complete one.

@@ -55,14 +55,8 @@ PointSet refine_strand(const KnotVector& old, const PointSet& control, const Kno
     return result;
 }
 
-} // namespace
-
-Spline refine(const Spline& spline, Index axis, const KnotVector& refined) {
+Spline over_knots(const Spline& spline, Index axis, const KnotVector& refined) {
     const KnotVector& old = spline.axis(axis);
-    if (refined.degree() != old.degree() || refined.closure() != old.closure() ||
-        !std::ranges::includes(domain_knots(refined), domain_knots(old)))
-        throw InvalidInput(
-            fmt::format("axis {}: the refined knots must contain the present ones", axis));
     std::vector<Index> shape = spline.control_shape();
     Index outer = 1;
     Index inner = spline.dim();
@@ -80,6 +74,17 @@ Spline refine(const Spline& spline, Index axis, const KnotVector& refined) {
     std::vector<KnotVector> axes = spline.axes();
     axes[static_cast<std::size_t>(axis)] = refined;
     return {std::move(axes), PointSet(std::move(values), spline.dim())};
+}
+
+} // namespace
+
+Spline refine(const Spline& spline, Index axis, const KnotVector& refined) {
+    const KnotVector& old = spline.axis(axis);
+    if (refined.degree() != old.degree() || refined.closure() != old.closure() ||
+        !std::ranges::includes(domain_knots(refined), domain_knots(old)))
+        throw InvalidInput(
+            fmt::format("axis {}: the refined knots must contain the present ones", axis));
+    return over_knots(spline, axis, refined);
 }
 
 Spline insert_knot(const Spline& spline, Index axis, double t, int times) {
@@ -102,6 +107,19 @@ Spline insert_knot(const Spline& spline, Index axis, double t, int times) {
         return refine(spline, axis,
                       knots_around(old.degree(), knots, old.begin(), old.end(), Closure::closed));
     return refine(spline, axis, {old.degree(), std::move(knots), Closure::open});
+}
+
+Spline clamped(const Spline& spline) {
+    Spline result = spline;
+    for (Index k = 0; k < spline.axis_count(); ++k) {
+        const KnotVector& old = spline.axis(k);
+        std::vector<double> interior;
+        for (double t : old.knots())
+            if (t > old.begin() && t < old.end()) interior.push_back(t);
+        result =
+            over_knots(result, k, knots_around(old.degree(), interior, old.begin(), old.end()));
+    }
+    return result;
 }
 
 } // namespace batten

@@ -57,6 +57,10 @@ Spline insert_knot(const Spline& spline, Index axis, double t, int times = 1);
 /// The same spline over `refined` knots on `axis`, which must contain the present ones.
 Spline refine(const Spline& spline, Index axis, const KnotVector& refined);
 
+/// The same spline with all axes open and clamped: the end knots have full multiplicity, for
+/// programs that know no other.
+Spline clamped(const Spline& spline);
+
 /// Value of the polar form (blossom) of the polynomial piece over `span` of a curve, at degree
 /// arguments: the control point that knots equal to the arguments would have.
 std::vector<double> blossom(const KnotVector& knots, const PointSet& control, Index span,

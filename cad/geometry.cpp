@@ -1,0 +1,159 @@
+#include "geometry.hpp"
+
+#include <batten/core/core.hpp>
+
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRep_Tool.hxx>
+#include <Geom_RectangularTrimmedSurface.hxx>
+#include <Geom_TrimmedCurve.hxx>
+#include <Precision.hxx>
+#include <TColStd_Array1OfInteger.hxx>
+#include <TColStd_Array1OfReal.hxx>
+#include <TColgp_Array1OfPnt.hxx>
+#include <TColgp_Array2OfPnt.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace batten::cad {
+
+namespace {
+
+struct Knots {
+    TColStd_Array1OfReal values;
+    TColStd_Array1OfInteger multiplicities;
+};
+
+/// The distinct knots of a clamped axis and how often each stands.
+Knots knots_of(const KnotVector& axis) {
+    const std::vector<double> distinct = axis.breakpoints();
+    const auto count = static_cast<int>(distinct.size());
+    Knots result{{1, count}, {1, count}};
+    for (int k = 1; k <= count; ++k) {
+        const double value = distinct[static_cast<std::size_t>(k - 1)];
+        result.values.SetValue(k, value);
+        result.multiplicities.SetValue(k,
+                                       static_cast<int>(std::ranges::count(axis.knots(), value)));
+    }
+    return result;
+}
+
+gp_Pnt point(std::span<const double> p) {
+    return {p[0], p[1], p.size() > 2 ? p[2] : 0.0};
+}
+
+Handle(Geom_BSplineCurve) curve_of(const Spline& spline) {
+    const PointSet& control = spline.control_points();
+    TColgp_Array1OfPnt poles(1, static_cast<int>(control.size()));
+    for (Index i = 0; i < control.size(); ++i)
+        poles.SetValue(static_cast<int>(i) + 1, point(control[i]));
+    const Knots knots = knots_of(spline.axis(0));
+    return new Geom_BSplineCurve(poles, knots.values, knots.multiplicities,
+                                 spline.axis(0).degree());
+}
+
+Handle(Geom_BSplineSurface) surface_of(const Spline& spline) {
+    const std::vector<Index> shape = spline.control_shape();
+    TColgp_Array2OfPnt poles(1, static_cast<int>(shape[0]), 1, static_cast<int>(shape[1]));
+    for (Index i = 0; i < shape[0]; ++i)
+        for (Index j = 0; j < shape[1]; ++j)
+            poles.SetValue(static_cast<int>(i) + 1, static_cast<int>(j) + 1,
+                           point(spline.control_points()[i * shape[1] + j]));
+    const Knots u = knots_of(spline.axis(0));
+    const Knots v = knots_of(spline.axis(1));
+    return new Geom_BSplineSurface(poles, u.values, v.values, u.multiplicities, v.multiplicities,
+                                   spline.axis(0).degree(), spline.axis(1).degree());
+}
+
+KnotVector axis_of(int degree, const TColStd_Array1OfReal& values,
+                   const TColStd_Array1OfInteger& multiplicities) {
+    std::vector<double> knots;
+    for (int k = values.Lower(); k <= values.Upper(); ++k)
+        knots.insert(knots.end(), static_cast<std::size_t>(multiplicities.Value(k)),
+                     values.Value(k));
+    return {degree, std::move(knots)};
+}
+
+void append(PointSet& control, Index at, const gp_Pnt& p) {
+    for (Index d = 0; d < 3; ++d) control(at, d) = p.Coord(static_cast<int>(d) + 1);
+}
+
+Spline spline_of(Handle(Geom_BSplineCurve) curve) {
+    if (curve->IsRational())
+        throw InvalidInput("the curve is rational (its poles have weights); only plain B-splines "
+                           "are read");
+    if (curve->IsPeriodic()) {
+        curve = Handle(Geom_BSplineCurve)::DownCast(curve->Copy());
+        curve->SetNotPeriodic();
+    }
+    PointSet control(curve->NbPoles(), 3);
+    for (int i = 1; i <= curve->NbPoles(); ++i) append(control, i - 1, curve->Pole(i));
+    return {{axis_of(curve->Degree(), curve->Knots(), curve->Multiplicities())},
+            std::move(control)};
+}
+
+Spline spline_of(Handle(Geom_BSplineSurface) surface) {
+    if (surface->IsURational() || surface->IsVRational())
+        throw InvalidInput("the surface is rational (its poles have weights); only plain B-splines "
+                           "are read");
+    if (surface->IsUPeriodic() || surface->IsVPeriodic()) {
+        surface = Handle(Geom_BSplineSurface)::DownCast(surface->Copy());
+        surface->SetUNotPeriodic();
+        surface->SetVNotPeriodic();
+    }
+    const int rows = surface->NbUPoles();
+    const int columns = surface->NbVPoles();
+    PointSet control(static_cast<Index>(rows) * columns, 3);
+    for (int i = 1; i <= rows; ++i)
+        for (int j = 1; j <= columns; ++j)
+            append(control, static_cast<Index>(i - 1) * columns + j - 1, surface->Pole(i, j));
+    return {{axis_of(surface->UDegree(), surface->UKnots(), surface->UMultiplicities()),
+             axis_of(surface->VDegree(), surface->VKnots(), surface->VMultiplicities())},
+            std::move(control)};
+}
+
+} // namespace
+
+TopoDS_Shape shape_of(const Spline& spline) {
+    if (spline.axis_count() > 2 || spline.dim() < 2 || spline.dim() > 3)
+        throw InvalidInput(fmt::format(
+            "a CAD file holds curves and surfaces in space, this spline has {} {} in "
+            "dimension {}",
+            spline.axis_count(), spline.axis_count() == 1 ? "axis" : "axes", spline.dim()));
+    const Spline open = clamped(spline);
+    if (spline.axis_count() == 1) {
+        BRepBuilderAPI_MakeEdge edge(curve_of(open));
+        if (!edge.IsDone()) throw InvalidInput("the curve is too short for a CAD file's precision");
+        return edge.Edge();
+    }
+    BRepBuilderAPI_MakeFace face(surface_of(open), Precision::Confusion());
+    if (!face.IsDone()) throw InvalidInput("the surface is too small for a CAD file's precision");
+    return face.Face();
+}
+
+std::vector<Spline> splines_of(const TopoDS_Shape& shape) {
+    std::vector<Spline> result;
+    for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next()) {
+        Handle(Geom_Surface) surface = BRep_Tool::Surface(TopoDS::Face(faces.Current()));
+        if (const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(surface))
+            surface = trimmed->BasisSurface();
+        if (const auto bspline = Handle(Geom_BSplineSurface)::DownCast(surface))
+            result.push_back(spline_of(bspline));
+    }
+    for (TopExp_Explorer edges(shape, TopAbs_EDGE, TopAbs_FACE); edges.More(); edges.Next()) {
+        double first = 0;
+        double last = 0;
+        Handle(Geom_Curve) curve = BRep_Tool::Curve(TopoDS::Edge(edges.Current()), first, last);
+        if (const auto trimmed = Handle(Geom_TrimmedCurve)::DownCast(curve))
+            curve = trimmed->BasisCurve();
+        if (const auto bspline = Handle(Geom_BSplineCurve)::DownCast(curve))
+            result.push_back(spline_of(bspline));
+    }
+    return result;
+}
+
+} // namespace batten::cad
