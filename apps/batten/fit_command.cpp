@@ -6,14 +6,33 @@
 #include <batten/io/output_file.hpp>
 #include <batten/io/spline_file.hpp>
 #include <batten/iterate/methods.hpp>
+#include <batten/report/html.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fstream>
 #include <memory>
 
 namespace batten::command {
 
 namespace {
+
+/// The command line as it was typed, words quoted where a shell needs it.
+std::string command_line() {
+    std::ifstream file("/proc/self/cmdline", std::ios::binary);
+    std::string line = "batten";
+    std::string word;
+    std::getline(file, word, '\0');
+    while (std::getline(file, word, '\0')) {
+        const bool plain = !word.empty() && word.find_first_not_of(
+                                                "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVW"
+                                                "XYZ0123456789-_=+.,:/@%") == std::string::npos;
+        std::string quoted = "'";
+        for (char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+        line += " " + (plain ? word : quoted + "'");
+    }
+    return line;
+}
 
 /// A file's name without folder and extension.
 std::string title_of(const std::string& path) {
@@ -24,10 +43,12 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     method_entry(flags.method);
     for (const std::string& output : flags.outputs) check_output(output);
     if (!flags.summary.empty()) check_folder(flags.summary);
+    if (!flags.report.empty()) check_folder(flags.report);
     Progress progress(flags.quiet ? Progress::Show::never : Progress::Show::when_slow);
     progress.say("reading " + flags.points);
     const Samples samples = samples_of(flags);
     FitOptions options = options_of(flags, fit_app, samples);
+    if (!flags.report.empty() && flags.history) options.most_frames = 60;
     options.cancelled = interrupted;
     options.observer = [&](const Iteration& now) {
         progress.say(fmt::format("iteration {}, gradient {:.2e}", now.number, now.gradient_norm));
@@ -54,6 +75,12 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     for (const std::string& output : flags.outputs) {
         progress.say("writing " + output);
         write_spline(output, scene);
+    }
+    if (!flags.report.empty()) {
+        progress.say("writing " + flags.report);
+        const PageOptions page{.command = command_line(),
+                               .unit = fit_app.count("--unit") > 0 ? flags.exported.unit : ""};
+        write_file(flags.report, html_page(result.report, scene, page));
     }
     if (!flags.summary.empty()) write_file(flags.summary, result.report.to_json());
     const bool stdout_taken = flags.summary == "-" || std::ranges::count(flags.outputs, "-") > 0;

@@ -26,6 +26,7 @@ void add_commands(CLI::App& app) {
     command::add_compare(app);
     command::add_info(app);
     command::add_convert(app);
+    command::add_plot(app);
     command::add_generate(app);
     command::add_methods(app);
     command::add_reproduce(app);

@@ -5,6 +5,7 @@
 #include <batten/io/output_file.hpp>
 #include <batten/io/points_file.hpp>
 #include <batten/io/spline_file.hpp>
+#include <batten/io/svg.hpp>
 #include <batten/measure/deviation.hpp>
 
 #include <fmt/format.h>
@@ -93,6 +94,29 @@ void describe_points(const std::string& path) {
     for (const std::string& note : samples.notes) fmt::print("  {}\n", note);
 }
 
+void plot(const std::string& spline_path, const std::string& points_path, const std::string& output,
+          bool comb) {
+    if (output != "-" && extension(output) != ".svg")
+        throw InvalidInput(fmt::format("plot: {}: a picture .svg is written", output));
+    if (output != "-") check_folder(output);
+    const Spline spline = read_spline(spline_path);
+    Samples samples;
+    std::vector<double> distances;
+    Scene scene{.spline = spline,
+                .title = std::filesystem::path(spline_path).stem().string(),
+                .curvature_comb = comb};
+    if (!points_path.empty()) {
+        samples = read_points(points_path);
+        scene.samples = &samples;
+        if (spline.axis_count() < 3) { // of a volume no closest point is known
+            for (const ClosestPoint& found : closest_points(spline, samples.points))
+                distances.push_back(found.distance);
+            scene.deviations = &distances;
+        }
+    }
+    write_file(output, svg_picture(scene));
+}
+
 } // namespace
 
 void add_evaluate(CLI::App& app) {
@@ -136,6 +160,23 @@ void add_info(CLI::App& app) {
     sub->footer("Example:\n  batten info part.json");
     sub->callback(
         [file] { is_spline_file(*file) ? describe_splines(*file) : describe_points(*file); });
+}
+
+void add_plot(CLI::App& app) {
+    struct Flags {
+        std::string spline, points, output = "-";
+        bool comb = false;
+    };
+    CLI::App* sub =
+        app.add_subcommand("plot", "A picture of a spline, and of points beside it, as SVG");
+    auto flags = std::make_shared<Flags>();
+    sub->add_option("SPLINE", flags->spline, "Spline .json .step .iges")->required();
+    sub->add_option("POINTS", flags->points, "Points, coloured by their distance from it");
+    sub->add_option("--output,-o", flags->output, "Picture .svg, - for standard output")
+        ->capture_default_str();
+    sub->add_flag("--comb", flags->comb, "The curvature comb of a planar curve");
+    sub->footer("Example:\n  batten plot part.json measured.csv -o part.svg");
+    sub->callback([flags] { plot(flags->spline, flags->points, flags->output, flags->comb); });
 }
 
 void add_convert(CLI::App& app) {

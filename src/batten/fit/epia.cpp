@@ -209,6 +209,7 @@ class Incremental {
     bool one_run(const DataSide& data, PointSet& control, Index& left, FitReport& report) {
         Pia pia(data);
         FitOptions options = options_;
+        options.most_frames = 0; // their polygons would be of several sizes
         options.stop.max_iterations = left;
         options.stop.relative_gradient = full() ? options_.stop.relative_gradient : 0;
         bool due = false;

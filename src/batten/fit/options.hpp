@@ -142,6 +142,8 @@ struct FitOptions {
     StopRule stop{};
     /// Keep an entry per iteration in the report.
     bool keep_history = false;
+    /// Keep about this many polygons of the iterations in the report; 0: none.
+    Index most_frames = 0;
     /// Threads for all passes; 0 takes every core. Results do not depend on it.
     int threads = 0;
     /// Asked now and then; true ends the fit with Cancelled, or inside an iteration as

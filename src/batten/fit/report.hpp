@@ -18,6 +18,12 @@ struct HistoryEntry {
     double constraint_error; ///< sum of squares; 0 without constraints
 };
 
+/// A polygon on the way: the free control points of one iteration.
+struct Frame {
+    Index iteration;
+    PointSet control; ///< (N x dim)
+};
+
 /// What was fitted, how it went and how far the samples are: the same object for library, command
 /// and page.
 struct FitReport {
@@ -60,6 +66,7 @@ struct FitReport {
     double data_size = 0; ///< diagonal of the samples' box
     std::vector<std::pair<std::string, double>> seconds; ///< per stage, in order
     std::vector<HistoryEntry> history;
+    std::vector<Frame> frames; ///< with FitOptions::most_frames, evenly over the iterations
     std::vector<std::string> notes;
 
     /// Whether the spline can be used: all endings but breakdown.
@@ -68,7 +75,9 @@ struct FitReport {
     double total_seconds() const;
     /// One line.
     std::string brief() const;
-    /// A few aligned lines.
+    /// The account in words: a name and what there is to say, line by line.
+    std::vector<std::pair<std::string, std::string>> lines() const;
+    /// brief() and these lines, aligned.
     std::string full() const;
     /// The JSON of docs/formats.md.
     std::string to_json() const;

@@ -15,9 +15,30 @@ namespace batten {
 
 namespace {
 
+/// Keeps the polygon of every `stride`-th iteration; once there are twice too many, of every other
+/// of these.
+class FrameRecorder {
+  public:
+    FrameRecorder(Index most, const std::vector<double>& centre) : most_(most), centre_(centre) {}
+    void record(const Iteration& now, std::vector<Frame>& frames) {
+        if (most_ == 0 || now.number % stride_ != 0) return;
+        frames.push_back(
+            {now.number, centre_.empty() ? now.control : uncentred(now.control, centre_)});
+        if (static_cast<Index>(frames.size()) < 2 * most_) return;
+        stride_ *= 2;
+        std::erase_if(frames, [&](const Frame& frame) { return frame.iteration % stride_ != 0; });
+    }
+
+  private:
+    Index most_;
+    std::vector<double> centre_;
+    Index stride_ = 1;
+};
+
 Observer recording(const FitOptions& options, const DeviationMeasure& deviation,
-                   FitReport& report) {
-    return [&](const Iteration& now) {
+                   const std::vector<double>& centre, FitReport& report) {
+    return [&, frames = FrameRecorder(options.most_frames, centre)](const Iteration& now) mutable {
+        frames.record(now, report.frames);
         if (options.keep_history)
             report.history.push_back({now.number, now.gradient_norm, now.largest_move,
                                       deviation(now.control), now.constraint_error});
@@ -96,11 +117,12 @@ StepLimit shape_limit(Preserve preserve, const std::vector<KnotVector>& axes,
 }
 
 void run(Method& method, PointSet& control, const FitOptions& options,
-         const std::vector<KnotVector>& axes, const DeviationMeasure& deviation,
-         FitReport& report) {
+         const std::vector<KnotVector>& axes, const DeviationMeasure& deviation, FitReport& report,
+         const std::vector<double>& centre) {
     const StepLimit limit = shape_limit(options.hold.preserve, axes, control, report.method);
-    const Summary summary = iterate(method, control, options.stop,
-                                    {recording(options, deviation, report), limit, deviation});
+    const Summary summary =
+        iterate(method, control, options.stop,
+                {recording(options, deviation, centre, report), limit, deviation});
     report.termination = summary.termination;
     report.iterations = summary.iterations;
     report.gradient_norm = summary.gradient_norm;
@@ -150,7 +172,8 @@ PointSet least_squares(const std::vector<KnotVector>& axes, const Samples& sampl
     } else {
         method = make_method(report.method, *system, options.method.settings);
     }
-    run(*method, control, options, axes, measuring(*system, samples, parameters), report);
+    run(*method, control, options, axes, measuring(*system, samples, parameters), report,
+        system->centre());
     report.seconds.emplace_back("solve", watch.lap());
     return uncentred(control, system->centre());
 }

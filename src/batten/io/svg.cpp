@@ -1,5 +1,7 @@
 #include <batten/io/svg.hpp>
 
+#include <batten/io/svg_parts.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -15,18 +17,20 @@ constexpr double margin = 36;
 struct Frame {
     double left, top, scale;
     double width, height;
+    double head; ///< pixels above, for the legend
     std::string at(double x, double y) const {
         return fmt::format("{:.3f} {:.3f}", margin + (x - left) * scale,
-                           margin + (top - y) * scale);
+                           margin + head + (top - y) * scale);
     }
 };
 
-Frame frame_around(const PointSet& box) {
+Frame frame_around(const PointSet& box, double head) {
     const double w = box(1, 0) - box(0, 0);
     const double h = box(1, 1) - box(0, 1);
     const double size = std::max({w, h, 1e-300});
     const double scale = picture_size / size;
-    return {box(0, 0), box(1, 1), scale, w * scale + 2 * margin, h * scale + 2 * margin};
+    return {box(0, 0), box(1, 1), scale, w * scale + 2 * margin, h * scale + 2 * margin + head,
+            head};
 }
 
 /// The four cubic Bezier points of the piece over a span, exact for degrees 1 to 3.
@@ -76,31 +80,6 @@ std::string curve_path(const Spline& curve, const Frame& frame) {
     return path;
 }
 
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (char c : text) {
-        if (c == '<')
-            result += "&lt;";
-        else if (c == '>')
-            result += "&gt;";
-        else if (c == '&')
-            result += "&amp;";
-        else if (c == '"')
-            result += "&quot;";
-        else
-            result += c;
-    }
-    return result;
-}
-
-std::string dots(const Points& points, const Frame& frame, double radius) {
-    std::string path;
-    for (Index i = 0; i < points.size(); ++i)
-        path += fmt::format("M {} h 0 ", frame.at(points(i, 0), points(i, 1)));
-    return fmt::format("  <path class=\"samples\" d=\"{}\" stroke-width=\"{}\"/>\n", path,
-                       2 * radius);
-}
-
 /// Normals of the curve as long as its curvature, the longest an eighth of the picture, and the
 /// line along their tips.
 std::string comb(const Spline& curve, const Frame& frame) {
@@ -132,6 +111,21 @@ std::string comb(const Spline& curve, const Frame& frame) {
     return fmt::format("  <path class=\"comb\" d=\"{}{}\"/>\n", path, tips);
 }
 
+/// The samples, coloured by their deviation where it is known, over the curve they lie on.
+std::string sample_dots(const Scene& scene, const Frame& frame) {
+    if (scene.samples == nullptr || scene.samples->dim() != 2) return {};
+    const Points& points = scene.samples->points;
+    std::vector<std::string> places;
+    for (Index i = 0; i < points.size(); ++i)
+        places.push_back(frame.at(points(i, 0), points(i, 1)));
+    const double largest =
+        scene.deviations == nullptr ? 0 : *std::ranges::max_element(*scene.deviations);
+    const double radius = std::clamp(40 / std::sqrt(static_cast<double>(points.size())), 0.8, 2.4);
+    std::string svg = coloured_dots(places, scene.deviations, largest, radius);
+    if (scene.deviations != nullptr) svg += deviation_legend(largest, 12, 8);
+    return svg;
+}
+
 PointSet box_around(const Scene& scene) {
     PointSet box = bounding_box(scene.spline.control_points());
     if (scene.samples == nullptr || scene.samples->dim() != 2) return box;
@@ -147,11 +141,12 @@ PointSet box_around(const Scene& scene) {
 
 std::string svg_picture(const Scene& scene) {
     const Spline& curve = scene.spline;
-    if (curve.axis_count() != 1 || curve.dim() != 2)
-        throw InvalidInput(fmt::format(
-            "an .svg picture needs a curve in the plane, this spline has {} axes in dimension {}",
-            curve.axis_count(), curve.dim()));
-    const Frame frame = frame_around(box_around(scene));
+    if (curve.dim() < 2 || curve.dim() > 3)
+        throw InvalidInput(
+            fmt::format("an .svg picture shows the plane or space, this spline is of dimension {}",
+                        curve.dim()));
+    if (curve.axis_count() != 1 || curve.dim() != 2) return svg_projection(scene);
+    const Frame frame = frame_around(box_around(scene), scene.deviations == nullptr ? 0 : 28);
     std::string svg = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.1f} "
                                   "{:.1f}\" width=\"{:.0f}\" height=\"{:.0f}\">\n",
                                   frame.width, frame.height, frame.width, frame.height);
@@ -164,19 +159,16 @@ std::string svg_picture(const Scene& scene) {
         "    .control { fill: #ffffff; stroke: #5c6b7a; stroke-width: 1; }\n"
         "  </style>\n"
         "  <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
-    if (!scene.title.empty()) svg += fmt::format("  <title>{}</title>\n", escaped(scene.title));
+    if (!scene.title.empty()) svg += fmt::format("  <title>{}</title>\n", svg_escaped(scene.title));
     const PointSet& control = curve.control_points();
     std::string polygon;
     for (Index i = 0; i < control.size(); ++i)
         polygon += (i == 0 ? "M " : " L ") + frame.at(control(i, 0), control(i, 1));
     svg += fmt::format("  <path class=\"polygon\" d=\"{}\"/>\n", polygon);
-    if (scene.samples != nullptr && scene.samples->dim() == 2) {
-        const double crowd = static_cast<double>(scene.samples->size());
-        svg += dots(scene.samples->points, frame, std::clamp(40 / std::sqrt(crowd), 0.8, 2.4));
-    }
     if (scene.curvature_comb) svg += comb(curve, frame);
     svg += fmt::format("  <path class=\"curve\" d=\"{}{}\"/>\n", curve_path(curve, frame),
                        curve.axis(0).closed() ? " Z" : "");
+    svg += sample_dots(scene, frame);
     const double mark = control.size() > 150 ? 1.6 : 2.6;
     for (Index i = 0; i < control.size(); ++i) {
         const std::string at = frame.at(control(i, 0), control(i, 1));

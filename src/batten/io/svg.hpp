@@ -5,8 +5,12 @@
 namespace batten {
 
 /// Picture of a planar curve: the curve as exact cubic Beziers (degree above 3: a close polyline),
-/// the samples and the control polygon. Throws InvalidInput unless the spline is a curve in the
-/// plane.
+/// the samples (coloured by deviation where it is known) and the control polygon; of anything else
+/// in space its projection. Throws InvalidInput outside dimensions 2 and 3.
 std::string svg_picture(const Scene& scene);
+
+/// Curves, surfaces and volumes in space seen from the front, the left and above: faces shaded with
+/// their iso-lines, the far ones first, and the samples coloured by deviation.
+std::string svg_projection(const Scene& scene);
 
 } // namespace batten

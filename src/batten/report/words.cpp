@@ -42,8 +42,14 @@ std::string FitReport::brief() const {
 
 std::string FitReport::full() const {
     std::string text = brief() + "\n";
+    for (const auto& [name, value] : lines()) text += fmt::format("  {:<12}{}\n", name, value);
+    return text;
+}
+
+std::vector<std::pair<std::string, std::string>> FitReport::lines() const {
+    std::vector<std::pair<std::string, std::string>> result;
     const auto line = [&](std::string_view name, const std::string& value) {
-        text += fmt::format("  {:<12}{}\n", name, value);
+        result.emplace_back(name, value);
     };
     line("deviation", fmt::format("largest {:.6g} at sample {} ({}), {}", deviation.maximum,
                                   deviation.worst_sample, to_string(deviation.kind),
@@ -100,7 +106,7 @@ std::string FitReport::full() const {
         times += fmt::format("{}{} {:.2g}", times.empty() ? "" : ", ", stage, time);
     line("seconds", fmt::format("{:.3g} ({})", total_seconds(), times));
     for (const std::string& note : notes) line("note", note);
-    return text;
+    return result;
 }
 
 } // namespace batten
