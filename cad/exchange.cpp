@@ -20,8 +20,11 @@
 #include <STEPControl_Reader.hxx>
 #include <STEPControl_Writer.hxx>
 #include <Standard_Failure.hxx>
+#include <StepBasic_Product.hxx>
+#include <StepData_StepModel.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
+#include <UnitsMethods.hxx>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -93,6 +96,20 @@ Handle(TCollection_HAsciiString) words(const std::string& text) {
     return new TCollection_HAsciiString(text.c_str());
 }
 
+/// Names the products by title, and by number where there are several: Open CASCADE counts on from
+/// file to file.
+void name_products(const StepData_StepModel& model, const std::string& title) {
+    int count = 0;
+    for (int i = 1; i <= model.NbEntities(); ++i) {
+        const auto product = Handle(StepBasic_Product)::DownCast(model.Value(i));
+        if (product.IsNull()) continue;
+        ++count;
+        const auto name = words(count == 1 ? title : fmt::format("{} {}", title, count));
+        product->SetName(name);
+        product->SetId(name);
+    }
+}
+
 /// Runs `work`; Open CASCADE's failures become SolverError.
 template <class Work>
 auto translated(Work work) {
@@ -133,10 +150,15 @@ std::string step_text(const Scene& scene) {
         Interface_Static::SetCVal("xstep.cascade.unit", unit); // coordinates stay as they are
         Interface_Static::SetCVal("write.step.unit", unit);
         Interface_Static::SetCVal("write.step.schema", "AP214IS");
+        const double millimetres = UnitsMethods::GetLengthFactorValue(
+            Interface_Static::IVal("write.step.unit")); // of one unit
+        writer.Model(true)->SetLocalLengthUnit(millimetres);
+        writer.Model()->SetWriteLengthUnit(millimetres);
         Interface_Static::SetCVal("write.step.product.name", plain(scene.title).c_str());
         for (const Spline* spline : scene.splines())
             if (writer.Transfer(shape_of(*spline), STEPControl_AsIs) != IFSelect_RetDone)
                 throw SolverError("Open CASCADE cannot write this spline as STEP");
+        name_products(*writer.Model(), plain(scene.title));
         APIHeaderSection_MakeHeader header(writer.Model());
         header.SetName(words(plain(scene.title)));
         header.SetTimeStamp(words(scene.date.empty() ? fixed_date : plain(scene.date)));
@@ -156,6 +178,9 @@ std::string iges_text(const Scene& scene) {
         const char* unit = unit_name(scene.unit);
         Interface_Static::SetCVal("xstep.cascade.unit", unit);
         IGESControl_Writer writer(unit, 0);
+        IGESData_GlobalSection start = writer.Model()->GlobalSection();
+        start.SetCascadeUnit(UnitsMethods::GetLengthFactorValue(start.UnitFlag()));
+        writer.Model()->SetGlobalSection(start);
         for (const Spline* spline : scene.splines())
             if (!writer.AddShape(shape_of(*spline)))
                 throw SolverError("Open CASCADE cannot write this spline as IGES");
@@ -209,17 +234,16 @@ std::vector<Spline> parse_iges(const std::filesystem::path& path, const std::str
         const TemporaryFile file(".igs");
         write_file(file.path(), content);
         IGESControl_Reader reader;
+        Interface_Static::SetIVal("read.iges.bspline.continuity", 0); // knots stay as they are
         if (reader.ReadFile(file.path().c_str()) != IFSelect_RetDone)
             throw FileError(path.string() + ": not an IGES file that can be read");
-        constexpr int inch = 1;
-        constexpr int metre = 6;
-        constexpr int centimetre = 10;
-        const int flag = reader.IGESModel()->GlobalSection().UnitFlag();
-        Interface_Static::SetCVal("xstep.cascade.unit", flag == inch         ? "INCH"
-                                                        : flag == metre      ? "M"
-                                                        : flag == centimetre ? "CM"
-                                                                             : "MM");
-        Interface_Static::SetIVal("read.iges.bspline.continuity", 0); // knots stay as they are
+        // the coordinates as they stand: the system's unit is made the file's
+        const Handle(IGESData_IGESModel) model = reader.IGESModel();
+        IGESData_GlobalSection global = model->GlobalSection();
+        const double millimetres = UnitsMethods::GetLengthFactorValue(global.UnitFlag());
+        global.SetCascadeUnit(millimetres);
+        model->SetGlobalSection(global);
+        UnitsMethods::SetCasCadeLengthUnit(millimetres);
         reader.TransferRoots();
         return found_in(path, reader.OneShape());
     });

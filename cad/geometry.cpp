@@ -111,9 +111,9 @@ Spline spline_of(Handle(Geom_BSplineSurface) surface) {
     for (int i = 1; i <= rows; ++i)
         for (int j = 1; j <= columns; ++j)
             append(control, static_cast<Index>(i - 1) * columns + j - 1, surface->Pole(i, j));
-    return {{axis_of(surface->UDegree(), surface->UKnots(), surface->UMultiplicities()),
-             axis_of(surface->VDegree(), surface->VKnots(), surface->VMultiplicities())},
-            std::move(control)};
+    return clamped({{axis_of(surface->UDegree(), surface->UKnots(), surface->UMultiplicities()),
+                     axis_of(surface->VDegree(), surface->VKnots(), surface->VMultiplicities())},
+                    std::move(control)});
 }
 
 } // namespace
