@@ -161,7 +161,7 @@ class Refusals(Command):
         self.bad(3, "g.csv:3: 3 numbers where the rows before have 2", "fit", self.write("g.csv", "1,2\n3,4\n5,6,7\n"), "-n", 8)
         self.bad(3, "h.csv:2:3: 'x' is not a number", "fit", self.write("h.csv", "1,2\n3,x\n"), "-n", 8)
         self.bad(2, "sample 1: its coordinates (3, inf) must be finite numbers", "fit", self.write("i.csv", "1,2\n3,inf\n"), "-n", 8)
-        self.bad(2, "a.foo: unknown extension '.foo'; known: .json, .svg", "fit", "r.csv", "-n", 8, "-o", "a.foo")
+        self.bad(2, "a.foo: unknown extension '.foo'; known: .json, .svg, .obj, .g2, .stl, .vts, .vtu, .csv, .step, .stp, .igs, .iges", "fit", "r.csv", "-n", 8, "-o", "a.foo")
         self.bad(3, "no/a.json: the folder no does not exist", "fit", "r.csv", "-n", 8, "-o", "no/a.json")
         self.bad(3, "no/s.json: the folder no does not exist", "fit", "r.csv", "-n", 8, "--summary", "no/s.json")
         if os.geteuid() != 0:

@@ -1,4 +1,5 @@
 // The report page: the picture, what can be shown in it, the account in words, the charts.
+import type { LineSegments } from "three";
 import "./style.css";
 import { Charts } from "./charts";
 import { deviationColour, divergingGradient, css, light, sequenceGradient } from "./colours";
@@ -165,7 +166,15 @@ function start() {
   toggle("samples", true, draw(samples));
   toggle(data.spline.shape.length === 1 ? "control polygon" : "control net", curve !== null, draw(net.group));
   if (curve) toggle("curve", true, draw(curve.group));
-  if (curve && curve.comb.children.length > 0) toggle("curvature comb", false, draw(curve.comb));
+  const places = () => {
+    const teeth = curve?.comb.visible ? curve.comb.children.map((lines) => (lines as LineSegments).geometry.getAttribute("position").array) : [];
+    return [samplePlaces, ...(flat ? [inSpace(data.spline.control, data.dim)] : []), ...teeth];
+  };
+  if (curve && curve.comb.children.length > 0)
+    toggle("curvature comb", false, (on) => {
+      curve.comb.visible = on;
+      stage.frame(places());
+    });
   if (surface) {
     toggle(data.spline.shape.length === 2 ? "surface" : "faces", true, draw(surface.group));
     toggle("knot lines", data.spline.control.length < 3e4, draw(surface.lines));
@@ -226,7 +235,7 @@ function start() {
     look();
   });
 
-  stage.frame([samplePlaces, inSpace(data.spline.control, data.dim)].slice(0, flat ? 2 : 1));
+  stage.frame(places());
   if (worstAt >= 0) read(worstAt);
   look();
   charts.draw();

@@ -109,7 +109,7 @@ TEST_F(Files, bad_text_is_refused_with_its_place) {
               "a.dat:5: numbers after a line of text that ended the points");
     EXPECT_EQ(refusal("a.csv", "1,2\n3,4\n", {.grid = {3, 3}}), "grid: 3x3 needs 9 samples, got 2");
     EXPECT_EQ(refusal("a.pts", "1,2\n"),
-              "a.pts: unknown extension of points '.pts'; known: .csv, .txt, .xyz, .dat, .npy");
+              "a.pts: unknown extension of points '.pts'; did you mean '.ply'?");
 }
 
 TEST_F(Files, missing_files_and_folders_are_file_trouble) {
@@ -122,7 +122,7 @@ TEST_F(Files, missing_files_and_folders_are_file_trouble) {
               path("no/where.json") + ": the folder " + path("no") + " does not exist");
     const std::string words = message_of<InvalidInput>([&] { check_output(path("a.jsn")); });
     EXPECT_TRUE(
-        words.starts_with(path("a.jsn") + ": unknown extension '.jsn'; known: .json, .svg"));
+        words.starts_with(path("a.jsn") + ": unknown extension '.jsn'; known: .json, .svg, .obj"));
 }
 
 TEST_F(Files, npy_of_other_types_and_orders_is_read) {
@@ -186,7 +186,7 @@ TEST_F(Files, a_failed_write_leaves_the_old_file) {
               1); // no temporary file stays
 }
 
-TEST_F(Files, a_picture_shows_exact_pieces_for_the_plane_only) {
+TEST_F(Files, a_picture_shows_exact_pieces) {
     const Spline parabola({KnotVector(2, {0, 0, 0, 1, 1, 1})}, PointSet({0, 0, 1, 2, 2, 0}, 2));
     write_spline(path("p.svg"), {parabola, nullptr, "<a & b>"});
     const std::string svg = read_file(path("p.svg"));
@@ -195,11 +195,9 @@ TEST_F(Files, a_picture_shows_exact_pieces_for_the_plane_only) {
     // pixels a unit
     EXPECT_NE(svg.find("C 336.000 336.000, 636.000 336.000, 936.000 936.000"), std::string::npos)
         << svg;
-    const Spline space({KnotVector(1, {0, 0, 1, 1})}, PointSet(2, 3));
-    EXPECT_EQ(message_of<InvalidInput>([&] {
-                  write_spline(path("q.svg"), {space, nullptr, ""});
-              }),
-              "an .svg picture needs a curve in the plane, this spline has 1 axes in dimension 3");
+    const Spline line({KnotVector(1, {0, 0, 1, 1})}, PointSet(2, 4));
+    EXPECT_EQ(message_of<InvalidInput>([&] { write_spline(path("q.svg"), {.spline = line}); }),
+              "an .svg picture shows the plane or space, this spline is of dimension 4");
     EXPECT_FALSE(std::filesystem::exists(path("q.svg")));
 }
 
