@@ -1,7 +1,7 @@
 # Debian packages, one list each for building and for testing; sourced by the scripts beside it.
 
-build_packages="g++ cmake ninja-build libeigen3-dev libtbb-dev libfmt-dev nlohmann-json3-dev libcli11-dev"
-test_packages="libgtest-dev python3 python3-numpy python3-scipy"
+build_packages="g++ cmake ninja-build libeigen3-dev libtbb-dev libfmt-dev nlohmann-json3-dev libcli11-dev libocct-data-exchange-dev"
+test_packages="libgtest-dev python3 python3-numpy python3-scipy python3-meshio chromium fonts-dejavu-core"
 
 race_packages="libbenchmark-dev python3 python3-numpy python3-scipy libocct-modeling-algorithms-dev libocct-modeling-data-dev libsisl-dev"
 
@@ -27,6 +27,19 @@ need() {
         echo "the packages could not be installed; run as root:  apt-get update && $line" >&2
         exit 1
     fi
+}
+
+# The viewer's packages, for building the report page and testing it in a browser.
+need_viewer() {
+    command -v npm >/dev/null || need nodejs npm
+    [ -d viewer/node_modules ] && [ viewer/node_modules -nt viewer/package-lock.json ] && return
+    echo "installing the viewer's packages"
+    if ! npm ci --prefix viewer --silent --no-audit --no-fund >/dev/null 2>&1; then
+        rm -rf viewer/node_modules
+        echo "the viewer's packages could not be installed: the page's tests are skipped"
+        return
+    fi
+    touch viewer/node_modules
 }
 
 # Configures and builds a preset, silent unless something is wrong.

@@ -48,9 +48,10 @@ Index EpiaAxis::fence(Index s, Index e) const {
     const auto k = [&](Index j) { return curvature_[static_cast<std::size_t>(j)]; };
     const auto [low, high] =
         std::minmax_element(curvature_.begin() + s, curvature_.begin() + e + 1);
-    const double range = *high - *low;
+    const double flattest = *low;
+    const double range = *high - flattest;
     const auto term = [&](Index j) {
-        const double bent = range > 0 ? (k(j) - *low) / range : 0;
+        const double bent = range > 0 ? (k(j) - flattest) / range : 0;
         return std::exp(bent) * (parameter(j) - parameter(s)) / (parameter(e) - parameter(s));
     };
     double total = 0;

@@ -125,6 +125,20 @@ TEST_F(Files, missing_files_and_folders_are_file_trouble) {
         words.starts_with(path("a.jsn") + ": unknown extension '.jsn'; known: .json, .svg, .obj"));
 }
 
+TEST_F(Files, npy_of_no_axes_or_no_numbers_reads_nothing_beyond_its_end) {
+    const auto npy = [&](const std::string& shape, const std::string& body) {
+        std::string head = "{'descr': '<f8', 'fortran_order': False, 'shape': " + shape + ", }";
+        return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(head.size()) + '\0' + head +
+               body;
+    };
+    write_file(path("a.npy"), npy("()", "abc"));
+    EXPECT_EQ(message_of<FileError>([&] { read_points(path("a.npy")); }),
+              path("a.npy") + ": a number is stated, 3 bytes are there");
+    write_file(path("a.npy"), npy("(0, 2)", ""));
+    EXPECT_EQ(message_of<InvalidInput>([&] { read_points(path("a.npy")); }),
+              "samples: there are none");
+}
+
 TEST_F(Files, npy_of_other_types_and_orders_is_read) {
     const auto header = [](const std::string& type, bool fortran, const std::string& shape) {
         std::string text = "{'descr': '" + type +

@@ -153,7 +153,11 @@ NumberArray parse_npy(const std::filesystem::path& path, std::string_view conten
                                    fmt::join(header.shape, "x"), available));
         count *= static_cast<std::size_t>(n);
     }
+    if (count > available) // a single number, of shape ()
+        fail(path, fmt::format("a number is stated, {} bytes are there",
+                               content.size() - header.data_begin));
     NumberArray result{std::vector<double>(count), header.shape, {}};
+    if (count == 0) return result;
     const char* data = content.data() + header.data_begin;
     const bool native =
         header.kind == 'f' && header.width == 8 && header.order != '>' && !header.fortran;
