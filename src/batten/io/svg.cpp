@@ -80,13 +80,17 @@ std::string curve_path(const Spline& curve, const Frame& frame) {
     return path;
 }
 
-/// Normals of the curve as long as its curvature, the longest an eighth of the picture, and the
-/// line along their tips.
-std::string comb(const Spline& curve, const Frame& frame) {
+/// A normal of the curve: foot and tip.
+struct Tooth {
+    std::array<double, 2> foot;
+    std::array<double, 2> tip;
+};
+
+/// Normals of the curve as long as its curvature, the longest an eighth of `size`.
+std::vector<Tooth> comb_of(const Spline& curve, double size) {
     constexpr int per_span = 10;
-    const KnotVector& k = curve.axis(0);
-    const std::vector<double> breaks = k.breakpoints();
-    std::vector<std::array<double, 4>> teeth; // foot, curvature times normal
+    const std::vector<double> breaks = curve.axis(0).breakpoints();
+    std::vector<Tooth> teeth; // the tip at first curvature times normal from the foot
     double longest = 1e-300;
     for (std::size_t b = 0; b + 1 < breaks.size(); ++b)
         for (int s = 0; s < per_span; ++s) {
@@ -98,14 +102,22 @@ std::string comb(const Spline& curve, const Frame& frame) {
             if (!(speed > 0)) continue;
             const double curvature = (d1[0] * d2[1] - d1[1] * d2[0]) / (speed * speed * speed);
             longest = std::max(longest, std::abs(curvature));
-            teeth.push_back({p[0], p[1], curvature * d1[1] / speed, -curvature * d1[0] / speed});
+            teeth.push_back(
+                {{p[0], p[1]}, {curvature * d1[1] / speed, -curvature * d1[0] / speed}});
         }
-    const double scale = picture_size / 8 / frame.scale / longest;
+    const double scale = size / 8 / longest;
+    for (Tooth& tooth : teeth)
+        for (std::size_t d = 0; d < 2; ++d) tooth.tip[d] = tooth.foot[d] + scale * tooth.tip[d];
+    return teeth;
+}
+
+/// The normals and the line along their tips.
+std::string comb_svg(const std::vector<Tooth>& teeth, const Frame& frame) {
     std::string path;
     std::string tips;
-    for (const auto& [x, y, nx, ny] : teeth) {
-        const std::string tip = frame.at(x + scale * nx, y + scale * ny);
-        path += fmt::format("M {} L {} ", frame.at(x, y), tip);
+    for (const Tooth& tooth : teeth) {
+        const std::string tip = frame.at(tooth.tip[0], tooth.tip[1]);
+        path += fmt::format("M {} L {} ", frame.at(tooth.foot[0], tooth.foot[1]), tip);
         tips += (tips.empty() ? "M " : " L ") + tip;
     }
     return fmt::format("  <path class=\"comb\" d=\"{}{}\"/>\n", path, tips);
@@ -126,14 +138,19 @@ std::string sample_dots(const Scene& scene, const Frame& frame) {
     return svg;
 }
 
-PointSet box_around(const Scene& scene) {
+PointSet box_around(const Scene& scene, const std::vector<Tooth>& comb) {
     PointSet box = bounding_box(scene.spline.control_points());
+    const auto include = [&](std::span<const double> point) {
+        for (Index d = 0; d < 2; ++d) {
+            box(0, d) = std::min(box(0, d), point[static_cast<std::size_t>(d)]);
+            box(1, d) = std::max(box(1, d), point[static_cast<std::size_t>(d)]);
+        }
+    };
+    for (const Tooth& tooth : comb) include(tooth.tip);
     if (scene.samples == nullptr || scene.samples->dim() != 2) return box;
     const PointSet other = bounding_box(scene.samples->points);
-    for (Index d = 0; d < 2; ++d) {
-        box(0, d) = std::min(box(0, d), other(0, d));
-        box(1, d) = std::max(box(1, d), other(1, d));
-    }
+    include(other[0]);
+    include(other[1]);
     return box;
 }
 
@@ -146,7 +163,10 @@ std::string svg_picture(const Scene& scene) {
             fmt::format("an .svg picture shows the plane or space, this spline is of dimension {}",
                         curve.dim()));
     if (curve.axis_count() != 1 || curve.dim() != 2) return svg_projection(scene);
-    const Frame frame = frame_around(box_around(scene), scene.deviations == nullptr ? 0 : 28);
+    const std::vector<Tooth> comb = scene.curvature_comb
+                                        ? comb_of(curve, diagonal(curve.control_points()))
+                                        : std::vector<Tooth>();
+    const Frame frame = frame_around(box_around(scene, comb), scene.deviations == nullptr ? 0 : 28);
     std::string svg = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.1f} "
                                   "{:.1f}\" width=\"{:.0f}\" height=\"{:.0f}\">\n",
                                   frame.width, frame.height, frame.width, frame.height);
@@ -165,7 +185,7 @@ std::string svg_picture(const Scene& scene) {
     for (Index i = 0; i < control.size(); ++i)
         polygon += (i == 0 ? "M " : " L ") + frame.at(control(i, 0), control(i, 1));
     svg += fmt::format("  <path class=\"polygon\" d=\"{}\"/>\n", polygon);
-    if (scene.curvature_comb) svg += comb(curve, frame);
+    if (scene.curvature_comb) svg += comb_svg(comb, frame);
     svg += fmt::format("  <path class=\"curve\" d=\"{}{}\"/>\n", curve_path(curve, frame),
                        curve.axis(0).closed() ? " Z" : "");
     svg += sample_dots(scene, frame);
