@@ -6,6 +6,7 @@
 #include <batten/samples/generate.hpp>
 #include <batten/samples/samples.hpp>
 #include <batten/parametrize/parametrize.hpp>
+#include <batten/parametrize/project.hpp>
 #include <batten/basis/basis_functions.hpp>
 #include <batten/basis/knot_vector.hpp>
 #include <batten/basis/place_knots.hpp>
@@ -19,3 +20,5 @@
 #include <batten/iterate/iterate.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/fit/fit.hpp>
+#include <batten/fit/tolerance.hpp>
+#include <batten/report/html.hpp>

@@ -281,5 +281,25 @@ TEST(ClosestPoint, agrees_with_a_dense_search) {
     }
 }
 
+TEST(Frames, are_kept_evenly_and_end_at_the_answer) {
+    const Samples rose = generate("rose", {});
+    FitOptions options{.shape = {.control_points = {40}},
+                       .method = {.name = "lspia"},
+                       .stop = {.max_iterations = 300, .relative_gradient = 0},
+                       .most_frames = 20};
+    const FitResult result = fit(rose, options);
+    const std::vector<Frame>& frames = result.report.frames;
+    ASSERT_GE(frames.size(), 10U);
+    ASSERT_LE(frames.size(), 40U);
+    const Index stride = frames[1].iteration;
+    for (std::size_t k = 0; k < frames.size(); ++k)
+        EXPECT_EQ(frames[k].iteration, static_cast<Index>(k) * stride);
+    // absolute coordinates: the first frame is made of samples picked from the data
+    EXPECT_NEAR(distance(frames[0].control[0], rose.points[0]), 0, 1e-12);
+    EXPECT_LT(
+        testing::largest_difference(frames.back().control, result.spline.free_control_points()),
+        0.05);
+}
+
 } // namespace
 } // namespace batten

@@ -1,5 +1,7 @@
 #include "problems.hpp"
 
+#include <batten/io/sampling.hpp>
+
 #include <batten/io/output_file.hpp>
 #include <filesystem>
 #include <fstream>
@@ -213,6 +215,34 @@ TEST_F(Files, a_picture_shows_exact_pieces) {
     EXPECT_EQ(message_of<InvalidInput>([&] { write_spline(path("q.svg"), {.spline = line}); }),
               "an .svg picture shows the plane or space, this spline is of dimension 4");
     EXPECT_FALSE(std::filesystem::exists(path("q.svg")));
+}
+
+TEST(Sampling, stays_within_the_chord) {
+    const Spline spline =
+        fit(generate("peaks", {}), {.shape = {.control_points = {20, 25}}}).spline;
+    for (double chord : {0.3, 0.03}) {
+        const auto t = sampling(spline, chord);
+        double worst = 0;
+        for (std::size_t i = 0; i + 1 < t[0].size(); i += 3)
+            for (std::size_t j = 0; j + 1 < t[1].size(); j += 3) {
+                const auto at = [&](double u, double v) { return spline(std::array{u, v}); };
+                const auto a = at(t[0][i], t[1][j]);
+                const auto b = at(t[0][i + 1], t[1][j]);
+                const auto c = at(t[0][i + 1], t[1][j + 1]);
+                const auto m = at((t[0][i] + t[0][i + 1]) / 2, (t[1][j] + t[1][j + 1]) / 2);
+                // half-way along the diagonal that parts the cell into triangles
+                double square = 0;
+                for (std::size_t d = 0; d < 3; ++d) square += std::pow(m[d] - (a[d] + c[d]) / 2, 2);
+                worst = std::max(worst, std::sqrt(square));
+                EXPECT_EQ(b.size(), 3U);
+            }
+        EXPECT_LT(worst, chord);
+        EXPECT_GT(worst, chord / 50); // and not far denser than that
+    }
+    EXPECT_EQ(message_of<InvalidInput>([&] { sampling(spline, 1e-12); }),
+              "chord tolerance 1e-12: more than 1e+07 points would be needed");
+    EXPECT_EQ(message_of<InvalidInput>([&] { sampling(spline, 0); }),
+              "chord tolerance 0: must be positive and finite");
 }
 
 } // namespace

@@ -175,5 +175,46 @@ TEST(Collocation, the_closed_conditions_agree_with_the_rank) {
     }
 }
 
+TEST(Directions, get_the_lengths_that_leave_the_least_error) {
+    const auto system = curve_system(3, 14, Closure::open);
+    const auto& axes = system->axes();
+    Constraints constraints(2);
+    const std::array first{1};
+    constraints.add(axes, std::array{0.3}, {}, std::array{0.2, -0.1}, "point");
+    constraints.add_direction(axes, std::array{0.3}, first, std::array{3.0, 1.0}, "one");
+    constraints.add_direction(axes, std::array{0.8}, first, std::array{-1.0, 2.0}, "two");
+    const Constraints local = constraints.centred(system->centre());
+    const PointSet best = solve_direct(*system, local);
+    const PointSet values = local.apply(best);
+    EXPECT_NEAR(values(1, 0) * 1.0 - values(1, 1) * 3.0, 0, 1e-12);
+    EXPECT_NEAR(values(2, 0) * 2.0 + values(2, 1) * 1.0, 0, 1e-12);
+    const auto length = [&](Index row, double x, double y) {
+        return (values(row, 0) * x + values(row, 1) * y) / std::hypot(x, y);
+    };
+    const std::array lengths{length(1, 3, 1), length(2, -1, 2)};
+    const double least = system->energy(best);
+    EXPECT_NEAR(system->energy(solve_direct(*system, local.with_lengths(lengths))), least,
+                1e-10 * std::abs(least));
+    for (std::size_t k : {0U, 1U})
+        for (double change : {-0.1, 0.1}) {
+            auto other = lengths;
+            other[k] += change;
+            EXPECT_GT(system->energy(solve_direct(*system, local.with_lengths(other))), least);
+        }
+}
+
+TEST(Constraints, those_that_follow_from_others_are_dropped) {
+    const auto system = curve_system(3, 10, Closure::open);
+    const auto& axes = system->axes();
+    Constraints constraints(2);
+    constraints.add(axes, std::array{0.0}, {}, std::array{0.5, 0.25}, "begin");
+    constraints.fix(0, std::array{0.5, 0.25}, "first control point"); // the same of a clamped curve
+    EXPECT_EQ(constraints.independent(system->size()).size(), 1);
+    Constraints other = constraints;
+    other.fix(0, std::array{0.5, 0.26}, "moved");
+    EXPECT_EQ(message_of<ConstraintConflict>([&] { other.independent(system->size()); }),
+              "constraints contradict each other: begin, moved");
+}
+
 } // namespace
 } // namespace batten

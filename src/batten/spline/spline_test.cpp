@@ -1,5 +1,7 @@
 #include "problems.hpp"
 
+#include <algorithm>
+
 namespace batten {
 namespace {
 
@@ -104,6 +106,25 @@ TEST(Spline, refuses_what_breaks_a_rule) {
               "evaluate: 2 parameters given for 1 axes");
     EXPECT_EQ(message_of<InvalidInput>([&] { s(std::array{0.5}, std::array{-1}); }),
               "evaluate: derivative order -1 is negative");
+}
+
+TEST(Spline, clamped_is_the_same_spline_with_full_end_knots) {
+    const KnotVector closed =
+        knots_around(3, std::array{0.0, 0.2, 0.2, 0.7}, 0, 1, Closure::closed);
+    const KnotVector unclamped(2, {-0.3, -0.1, 0, 0.4, 0.5, 1, 1.2, 1.3});
+    const KnotVector plain = uniform_knots(1, 3, 0, 1);
+    const Spline spline = Spline::from_free(
+        {closed, unclamped, plain},
+        random_points(closed.free_count() * unclamped.free_count() * plain.free_count(), 2, 4));
+    const Spline same = clamped(spline);
+    for (const KnotVector& axis : same.axes()) {
+        EXPECT_FALSE(axis.closed());
+        EXPECT_EQ(std::ranges::count(axis.knots(), axis.begin()), axis.degree() + 1);
+        EXPECT_EQ(std::ranges::count(axis.knots(), axis.end()), axis.degree() + 1);
+    }
+    const std::vector<double> t = even(0, 1, 21);
+    EXPECT_LT(largest_difference(evaluate_grid(spline, {t, t, t}), evaluate_grid(same, {t, t, t})),
+              1e-13);
 }
 
 } // namespace

@@ -2,9 +2,11 @@
 
 #include <batten/iterate/lspia.hpp>
 #include <batten/system/factored_system.hpp>
+#include <batten/system/roughness.hpp>
 #include <batten/system/stencil_system.hpp>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <fstream>
 
 namespace batten {
@@ -252,6 +254,66 @@ TEST(OnePass, memory_does_not_grow_with_the_samples) {
         solve_direct(system);
     });
     EXPECT_LT(peak, std::size_t{16} << 20U) << peak;
+}
+
+TEST(Roughness, is_the_integral_of_the_squared_derivative) {
+    for (const KnotVector& knots :
+         {knots_from_parameters(random_parameters(40, 3), 4, 12), uniform_knots(3, 9, 0, 1),
+          knots_around(3, std::array{0.1, 0.4, 0.45, 0.8, 0.9}, 0, 1, Closure::closed)})
+        for (int order : {0, 2, 3}) {
+            const PointSet control = random_points(knots.free_count(), 1, 7);
+            PointSet image(control.size(), 1);
+            roughness_matrix(knots, order).apply(control.data(), image.data(), {1, 1});
+            const Spline spline = Spline::from_free({knots}, control);
+            // Simpson's rule piece by piece is exact to degree 3 only: many small steps
+            double integral = 0;
+            const std::vector<double> breaks = knots.breakpoints();
+            for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
+                constexpr int steps = 400;
+                const double h = (breaks[b + 1] - breaks[b]) / steps;
+                for (int s = 0; s < steps; ++s) {
+                    const auto square = [&](double at) {
+                        const double t = breaks[b] + (s + at) * h;
+                        // inside the piece: the last derivative jumps at its ends
+                        const double inside =
+                            std::clamp(t, breaks[b] + 1e-9 * h, breaks[b + 1] - 1e-9 * h);
+                        const double d = spline(std::array{inside}, std::array{order})[0];
+                        return d * d;
+                    };
+                    integral += h / 6 * (square(0) + 4 * square(0.5) + square(1));
+                }
+            }
+            EXPECT_NEAR(inner_product(control, image), integral, 1e-7 * integral);
+        }
+}
+
+TEST(Roughness, a_cloud_and_a_grid_minimise_what_they_say) {
+    // the energy of a cloud's system grows by lambda W times the sum over the axes of the integral
+    const std::vector<KnotVector> axes{uniform_knots(3, 6, 0, 1), uniform_knots(2, 5, 0, 1)};
+    StencilSystem cloud(axes, {0.0});
+    const PointSet t = [&] {
+        PointSet rows = random_points(200, 2, 9);
+        for (double& x : rows.values()) x = (x + 1) / 2;
+        return rows;
+    }();
+    cloud.add(random_points(200, 1, 8), t, {});
+    const PointSet control = random_points(30, 1, 10);
+    PointSet before(30, 1);
+    PointSet after(30, 1);
+    cloud.apply(control, before);
+    cloud.add_roughness(0.25, 2);
+    cloud.apply(control, after);
+    // P^T (R0 x M1 + M0 x R1) P by rows and columns
+    double expected = 0;
+    for (std::size_t rough : {0U, 1U}) {
+        PointSet half(30, 1);
+        PointSet whole(30, 1);
+        roughness_matrix(axes[0], rough == 0 ? 2 : 0).apply(control.data(), half.data(), {1, 5});
+        roughness_matrix(axes[1], rough == 1 ? 2 : 0).apply(half.data(), whole.data(), {6, 1});
+        expected += inner_product(control, whole);
+    }
+    EXPECT_NEAR(inner_product(control, after) - inner_product(control, before),
+                0.25 * 200 * expected, 1e-9 * std::abs(200 * expected));
 }
 
 } // namespace
