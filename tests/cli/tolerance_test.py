@@ -292,6 +292,7 @@ class Tolerance(unittest.TestCase):
             "far away": np.stack([1e9 + line, 1e9 + np.sin(6 * line)], axis=1),
             "tiny": 1e-9 * np.stack([line, np.sin(6 * line)], axis=1),
             "noise": rng.normal(size=(60, 2)),
+            "far away and tiny": np.stack([1e9 + 1e-3 * line, 1e9 + 1e-3 * np.sin(6 * line)], axis=1),
         }
         for name, points in cases.items():
             path = self.folder / "c.csv"
@@ -302,6 +303,9 @@ class Tolerance(unittest.TestCase):
                 self.assertIn(done.returncode, (0, 4), (name, part, done.stderr))
                 summary = json.loads(done.stdout)
                 self.assertEqual(summary["termination"], "tolerance_met" if done.returncode == 0 else "tolerance_not_met")
+                for form in ("--closed", "--closed=C0", "--closed=C1"):
+                    again = subprocess.run([BATTEN, "fit", path, "--tolerance", repr(part * size), "-q", form], capture_output=True, text=True, timeout=60)
+                    self.assertIn(again.returncode, (0, 4), (name, part, form, again.stderr))
                 if done.returncode == 0:
                     self.assertLessEqual(summary["max_deviation"], part * size * (1 + 1e-12))
 
@@ -317,12 +321,15 @@ class Tolerance(unittest.TestCase):
             ("boundary u0: only a grid's surface or volume has boundaries to hold", "--tolerance", 1, "--boundary", f"u0={self.folder / 'rose.json'}"),
             ("corner 900: the samples are 0 to 500", "--tolerance", 1, "--corners", "900"),
             ("project: points of dimension 3 are needed, got 2", "--tolerance", 1, "--project", "xz"),
+            ("smoothing: the derivative of order 3 vanishes for degree 2", "--smooth", "auto", "--smooth-order", 3, "-p", 2),
+            ("corner 2: too few samples between it and the corner or end beside it; a piece of degree 3 needs 4", "--tolerance", 1, "--corners", "2"),
             ("--smooth -1: auto or a positive number is needed", "--smooth=-1"),
             ("tolerance: the method is the search's own, got lspia; epia has its own (--stop-deviation)", "--tolerance", 1, "--method", "lspia"),
         ):
             done = subprocess.run([BATTEN, "fit", path, *map(str, arguments)], capture_output=True, text=True)
             self.assertEqual((done.returncode, done.stderr), (2, f"batten: {message}\n"))
-        for points, message in ((np.zeros((1, 2)), "axis 0: degree 3 needs at least 4 samples, got 1"),
+        for points, message in ((np.repeat(np.array([[0.0, 0], [1, 0], [1, 1]]), 4, axis=0), "axis 0: degree 3 needs at least 4 samples at different places, got 3"),
+                                (np.zeros((1, 2)), "axis 0: degree 3 needs at least 4 samples, got 1"),
                                 (np.zeros((20, 2)), "axis 0: all points are identical; a curve through them has no length")):
             np.savetxt(self.folder / "d.csv", points, delimiter=",")
             done = subprocess.run([BATTEN, "fit", self.folder / "d.csv", "--tolerance", "1"], capture_output=True, text=True)

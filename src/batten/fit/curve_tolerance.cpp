@@ -110,17 +110,29 @@ struct Refinement {
                   ///< the tolerance
 };
 
+/// Few knots to start from, between the parameters on a closed curve, and those that last: as many
+/// as the samples determine.
+KnotVector first_knots(const CurveTask& task) {
+    if (task.closure == Closure::open)
+        return knots_around(task.degree, with_lasting_knots(task, {}), task.parameters.front(),
+                            task.parameters.back());
+    const auto m = static_cast<Index>(task.parameters.size());
+    KnotVector knots;
+    for (Index n = std::min<Index>(2 * task.degree + 2, m - 1); n > task.degree; --n) {
+        const KnotVector spread =
+            knots_from_parameters(task.parameters, task.degree, n, Closure::closed);
+        knots = knots_around(task.degree, with_lasting_knots(task, interior_knots(spread)), 0, 1,
+                             Closure::closed);
+        if (!undetermined(knots, task.parameters)) break;
+    }
+    return knots;
+}
+
 /// Refines until the tolerance is met, or the round that came nearest.
 CurveTrial refine_by(const Refinement& way, const CurveTask& task, Index most) {
     constexpr int most_rounds = 60;
     CurveTrial trial;
-    const bool closed = task.closure == Closure::closed;
-    std::vector<double> first;
-    for (int k = 1; closed && k < 2 * task.degree + 2; ++k)
-        first.push_back(k / (2.0 * task.degree + 2));
-    trial.knots = knots_around(task.degree, with_lasting_knots(task, first),
-                               closed ? 0 : task.parameters.front(),
-                               closed ? 1 : task.parameters.back(), task.closure);
+    trial.knots = first_knots(task);
     trial.parameters = task.parameters;
     trial.ratio.assign(trial.parameters.size(), 0.0);
     CurveTrial best;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 namespace batten {
 
@@ -38,6 +39,36 @@ OneTurn without_seam(const Samples& samples, HoldOptions hold, Closure closure) 
     return result;
 }
 
+/// Without the corners that have too few samples between them and the one before, or an end: a
+/// piece of the curve of its own needs degree + 1.
+std::vector<Index> spaced_corners(const std::vector<Index>& corners, const CurveTask& task) {
+    const Index m = task.samples.size();
+    const bool closed = task.closure == Closure::closed;
+    const bool free_seam = closed && task.seam_continuity >= task.degree - 1;
+    const auto distinct = [&](Index from, Index to) { // parameters from one sample to the other
+        Index count = 1;
+        for (Index i = from; i < to; ++i)
+            count += task.parameters[static_cast<std::size_t>(i + 1)] >
+                             task.parameters[static_cast<std::size_t>(i)]
+                         ? 1
+                         : 0;
+        return count;
+    };
+    std::vector<Index> kept;
+    for (Index i : corners) {
+        const Index before = kept.empty() ? 0 : kept.back();
+        const bool after_nothing = free_seam && kept.empty();
+        if (i > 0 && !after_nothing && distinct(before, i) <= task.degree) continue;
+        if (i > 0 && !free_seam && distinct(i, m - 1) <= task.degree) continue;
+        kept.push_back(i);
+    }
+    // round the seam, from the last corner to the first
+    if (closed && kept.size() > 1 &&
+        distinct(kept.back(), m - 1) + distinct(0, kept.front()) <= task.degree)
+        kept.pop_back();
+    return kept;
+}
+
 std::vector<Index> checked_corners(std::vector<Index> corners, const CurveTask& task) {
     const Index m = task.samples.size();
     const bool closed = task.closure == Closure::closed;
@@ -48,6 +79,13 @@ std::vector<Index> checked_corners(std::vector<Index> corners, const CurveTask& 
             throw InvalidInput(fmt::format("corner {}: the samples are 0 to {}", i, m - 1));
     if (!closed) // the ends are free to have any direction already
         std::erase_if(corners, [&](Index i) { return i == 0 || i == m - 1; });
+    const std::vector<Index> spaced = spaced_corners(corners, task);
+    for (Index i : corners)
+        if (!std::ranges::binary_search(spaced, i))
+            throw InvalidInput(
+                fmt::format("corner {}: too few samples between it and the corner or "
+                            "end beside it; a piece of degree {} needs {}",
+                            i, task.degree, task.degree + 1));
     return corners;
 }
 
@@ -70,7 +108,7 @@ CurveWithin few_knots(CurveTask& task, const ToleranceOptions& options, Index mo
     CurveWithin best = refined(task, most);
     if (options.corners == Corners::automatic) {
         CurveTask cornered = task;
-        cornered.corners = find_corners(task.samples.points, task.closure);
+        cornered.corners = spaced_corners(find_corners(task.samples.points, task.closure), task);
         if (!cornered.corners.empty()) {
             cornered.fixed = fixed_samples(cornered);
             CurveWithin other = refined(cornered, most);
@@ -164,6 +202,15 @@ CurveTask task_of(const OneTurn& turn, const FitOptions& options,
     task.parameters = shape.parameters ? shape.parameters->axes[0]
                                        : parametrize_sequence(samples.points, shape.parametrization,
                                                               task.closure);
+    const auto distinct =
+        1 +
+        std::ranges::count_if(task.parameters, [last = task.parameters.front()](double t) mutable {
+            return std::exchange(last, t) < t;
+        });
+    if (distinct < least)
+        throw InvalidInput(fmt::format("axis 0: {}degree {} needs at least {} samples at different "
+                                       "places, got {}",
+                                       closed ? "closed, " : "", task.degree, least, distinct));
     task.cancelled = options.cancelled;
     return task;
 }

@@ -42,15 +42,16 @@ std::string choose_method(const FitOptions& options, const std::string& gap,
             "{}: the direct solver cannot determine every control point (Schoenberg-Whitney); "
             "use an iterative method such as --method cg, or --smooth",
             gap));
-    if (name == "direct" && shape)
-        throw InvalidInput(
-            "method direct cannot preserve a shape step by step; use lspia, mlspia or clspia");
     if (name != "auto" && name != "direct" && name != "clspia" && exact)
         throw InvalidInput(fmt::format(
             "method {} cannot interpolate samples exactly; use direct or clspia", name));
     if (name != "auto") return name;
+    if (shape && gap.empty()) {
+        report.method_reason = "the shape is kept by quadratic programs";
+        return "direct";
+    }
     if (shape) {
-        report.method_reason = "the shape is kept step by step";
+        report.method_reason = gap + ": the shape is kept step by step";
         return exact ? "clspia" : "mlspia";
     }
     if (parameters.is_scattered() && !exact && !options.smooth.wanted) {
@@ -86,7 +87,12 @@ void note_duplicates(const Parameters& parameters, FitReport& report) {
 
 /// What smoothing decides where the caller left it open: enough control points, and parameters of
 /// a noisy sequence.
-void prepare_smoothing(const Samples& samples, ShapeOptions& shape) {
+void prepare_smoothing(const Samples& samples, int order, ShapeOptions& shape) {
+    for (int degree : shape.degree)
+        if (degree < order)
+            throw InvalidInput(fmt::format("smoothing: the derivative of order {} vanishes for "
+                                           "degree {}",
+                                           order, degree));
     if (shape.control_points.empty() && shape.knots.empty())
         shape.control_points = smoothing_size(samples, shape);
     const bool chords = !shape.parameters && shape.parametrization == Parametrization::chord;
@@ -96,7 +102,7 @@ void prepare_smoothing(const Samples& samples, ShapeOptions& shape) {
 
 /// A fit with stated knots or a stated number of control points, by least squares.
 FitResult fit_fixed(const Samples& samples, FitOptions options) {
-    if (options.smooth.wanted) prepare_smoothing(samples, options.shape);
+    if (options.smooth.wanted) prepare_smoothing(samples, options.smooth.order, options.shape);
     FitResult result;
     FitReport& report = result.report;
     Stopwatch watch;
@@ -151,6 +157,18 @@ void describe(FitResult& result, const Samples& samples, const FitOptions& optio
     report.boundaries = static_cast<Index>(options.hold.boundaries.size());
 }
 
+/// A tolerance below what numbers as large as the coordinates can tell apart is not met, whatever
+/// the search found relative to the first sample.
+void judge_rounding(const FitOptions& options, FitReport& report) {
+    const bool one_for_all = options.tolerance.stated() && options.tolerance.per_sample.empty();
+    if (!one_for_all || report.termination != Termination::tolerance_met ||
+        report.deviation.maximum <= report.tolerance * (1 + 1e-9))
+        return;
+    report.termination = Termination::tolerance_not_met;
+    report.verdict = "not met: it is below what the coordinates, as large as they are, can tell "
+                     "apart; shift them towards zero";
+}
+
 FitResult fit_all(const Samples& samples, const FitOptions& options) {
     const std::string& method = options.method.name;
     FitResult result = method == "pia"              ? fit_pia(samples, options)
@@ -159,6 +177,7 @@ FitResult fit_all(const Samples& samples, const FitOptions& options) {
                                                     : fit_fixed(samples, options);
     Stopwatch watch;
     describe(result, samples, options);
+    judge_rounding(options, result.report);
     result.report.seconds.emplace_back("deviation", watch.lap());
     return result;
 }

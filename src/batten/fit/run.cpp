@@ -1,6 +1,7 @@
 #include <batten/fit/run.hpp>
 
 #include <batten/core/stopwatch.hpp>
+#include <batten/fit/keep_shape.hpp>
 #include <batten/fit/plan.hpp>
 #include <batten/fit/smoothing.hpp>
 #include <batten/iterate/clspia.hpp>
@@ -134,6 +135,31 @@ void run(Method& method, PointSet& control, const FitOptions& options,
     if (limit) report.inflections = inflection_count(control, axes[0].closure());
 }
 
+namespace {
+
+/// The direct answer whose polygon bends no more often than the initial one, or not at all.
+PointSet solve_shaped(const NormalSystem& system, const Constraints& constraints,
+                      const Samples& samples, const Parameters& parameters,
+                      const FitOptions& options, FitReport& report) {
+    const PointSet initial = initial_control(samples, parameters, system.axes(), options.method);
+    shape_limit(options.hold.preserve, system.axes(), initial, "direct"); // refuses what has none
+    const Closure closure = system.axes()[0].closure();
+    const Index most =
+        options.hold.preserve == Preserve::convexity ? 0 : inflection_count(initial, closure);
+    PointSet control = solve_with_inflections(system, constraints, most);
+    report.inflections = inflection_count(control, closure);
+    if (report.inflections > most) {
+        report.termination = Termination::stalled;
+        report.notes.push_back(
+            fmt::format("the shape could not be kept with these control points: {} inflections "
+                        "where the initial polygon has {}; more control points may do",
+                        report.inflections, most));
+    }
+    return control;
+}
+
+} // namespace
+
 PointSet least_squares(const std::vector<KnotVector>& axes, const Samples& samples,
                        const Parameters& parameters, const Constraints& constraints,
                        const FitOptions& options, FitReport& report) {
@@ -154,7 +180,11 @@ PointSet least_squares(const std::vector<KnotVector>& axes, const Samples& sampl
     const Constraints local = constraints.centred(system->centre());
     if (report.method == "direct") {
         check_settings(method_entry("direct"), options.method.settings);
-        const PointSet control = uncentred(solve_direct(*system, local), system->centre());
+        const PointSet control =
+            uncentred(options.hold.preserve == Preserve::nothing
+                          ? solve_direct(*system, local)
+                          : solve_shaped(*system, local, samples, parameters, options, report),
+                      system->centre());
         report.seconds.emplace_back("solve", watch.lap());
         return control;
     }

@@ -98,9 +98,10 @@ std::vector<std::pair<std::string, std::string>> FitReport::lines() const {
         line("exact",
              fmt::format("{} {} held", boundaries, boundaries == 1 ? "boundary" : "boundaries"));
     if (inflections >= 0)
-        line("shape", fmt::format("{} inflections in the control polygon, {}", inflections,
-                                  tolerance > 0 ? fmt::format("{} in the samples", data_inflections)
-                                                : "as at the start"));
+        line("shape",
+             tolerance > 0 ? fmt::format("{} inflections in the control polygon, {} in the samples",
+                                         inflections, data_inflections)
+                           : fmt::format("{} inflections in the control polygon", inflections));
     std::string times;
     for (const auto& [stage, time] : seconds)
         times += fmt::format("{}{} {:.2g}", times.empty() ? "" : ", ", stage, time);
