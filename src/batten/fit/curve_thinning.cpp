@@ -38,6 +38,8 @@ std::vector<double> knot_significance(const CurveTask& task, const CurveTrial& t
 /// Tries the trial without some of its knots.
 bool without(const CurveTask& task, CurveTrial& trial, const std::vector<double>& interior,
              int rounds) {
+    if (task.closure == Closure::closed && static_cast<int>(interior.size()) < task.degree)
+        return false; // a closed curve has degree + 1 control points at least
     CurveTrial attempt = trial;
     attempt.knots = with_interior(task, trial.knots, interior);
     attempt.weights = first_weights(task);
