@@ -1,6 +1,24 @@
 #include "export_flags.hpp"
 
+#include <fmt/format.h>
+
 namespace batten::command {
+
+namespace {
+
+/// YYYY-MM-DDTHH:MM:SS, each part in its range.
+bool is_date(const std::string& text) {
+    constexpr std::string_view pattern = "dddd-dd-ddTdd:dd:dd";
+    if (text.size() != pattern.size()) return false;
+    for (std::size_t k = 0; k < text.size(); ++k)
+        if (pattern[k] == 'd' ? !(text[k] >= '0' && text[k] <= '9') : text[k] != pattern[k])
+            return false;
+    const auto part = [&](std::size_t at) { return 10 * (text[at] - '0') + text[at + 1] - '0'; };
+    return part(5) >= 1 && part(5) <= 12 && part(8) >= 1 && part(8) <= 31 && part(11) < 24 &&
+           part(14) < 60 && part(17) < 60;
+}
+
+} // namespace
 
 void add_export_flags(CLI::App& app, ExportFlags& flags) {
     app.add_option("--unit", flags.unit, "Unit of the coordinates in CAD files: mm, cm, m or in")
@@ -19,6 +37,9 @@ void add_export_flags(CLI::App& app, ExportFlags& flags) {
 }
 
 void apply(const ExportFlags& flags, Scene& scene) {
+    if (!flags.date.empty() && !is_date(flags.date))
+        throw InvalidInput(
+            fmt::format("--date {}: a date like 2026-01-31T12:00:00 is needed", flags.date));
     scene.unit = flags.unit;
     scene.chord_tolerance = flags.chord_tolerance;
     scene.date = flags.date;

@@ -39,11 +39,23 @@ std::string title_of(const std::string& path) {
     return path == "-" ? "points" : std::filesystem::path(path).stem().string();
 }
 
+/// The points must not be overwritten by what is made of them.
+void check_not_input(const std::string& output, const std::string& input) {
+    std::error_code error;
+    if (input != "-" && std::filesystem::equivalent(output, input, error))
+        throw InvalidInput(fmt::format("{}: it is the file of the points", output));
+}
+
 void run(const FitFlags& flags, const CLI::App& fit_app) {
     method_entry(flags.method);
     for (const std::string& output : flags.outputs) check_output(output);
     if (!flags.summary.empty()) check_folder(flags.summary);
-    if (!flags.report.empty()) check_folder(flags.report);
+    if (!flags.report.empty()) {
+        check_folder(flags.report);
+        if (extension(flags.report) != ".html")
+            throw InvalidInput(fmt::format("--report {}: a page .html is written", flags.report));
+    }
+    for (const std::string& output : flags.outputs) check_not_input(output, flags.points);
     Progress progress(flags.quiet ? Progress::Show::never : Progress::Show::when_slow);
     progress.say("reading " + flags.points);
     const Samples samples = samples_of(flags);

@@ -1,4 +1,5 @@
 #include "fit_flags.hpp"
+#include "parse.hpp"
 
 namespace batten::command {
 
@@ -25,13 +26,10 @@ void add_shape_flags(CLI::App& fit, FitFlags& flags) {
         ->delimiter(',')
         ->group("Shape")
         ->capture_default_str();
-    fit.add_option(
-           "--closed", flags.closed,
-           "Closed curve, at its seam as smooth as elsewhere or --closed=C0, C1, ...; for a "
-           "grid the closed axes, as --closed=0 or --closed=0,1")
-        ->expected(0, 1)
-        ->group("Shape")
-        ->default_str("all");
+    fit.add_flag("--closed{all}", flags.closed,
+                 "Closed curve, at its seam as smooth as elsewhere or --closed=C0, C1, ...; for a "
+                 "grid the closed axes, as --closed=0 or --closed=0,1")
+        ->group("Shape");
     fit.add_option("--parametrize", flags.parametrize, "chord, centripetal or uniform")
         ->group("Shape")
         ->capture_default_str();
@@ -140,6 +138,7 @@ void add_flags(CLI::App& fit, FitFlags& flags) {
     add_output_flags(fit, flags);
     add_shape_flags(fit, flags);
     add_method_flags(fit, flags);
+    one_value_each(fit);
 }
 
 } // namespace batten::command

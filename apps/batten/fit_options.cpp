@@ -19,9 +19,12 @@ namespace {
 /// `0,20,40`, or the whole numbers of a file.
 std::vector<Index> index_list(std::string_view option, const std::string& text) {
     std::vector<double> numbers;
-    if (text.find_first_not_of("0123456789,") != std::string::npos)
+    if (text.find_first_not_of("0123456789,") != std::string::npos) {
+        if (extension(text).empty())
+            throw InvalidInput(
+                fmt::format("{} {}: a list like 0,20,40 or a file is needed", option, text));
         numbers = read_table(text).values();
-    else
+    } else
         for (std::size_t at = 0; at <= text.size();) {
             const std::size_t end = std::min(text.find(',', at), text.size());
             numbers.push_back(parse_number(option, text.substr(at, end - at)));
@@ -255,7 +258,32 @@ Samples samples_of(const FitFlags& flags) {
     return samples;
 }
 
+namespace {
+
+/// Throws InvalidInput for flags that say nothing, or contradict each other, beside the others.
+void check_together(const FitFlags& flags, const CLI::App& fit) {
+    const auto given = [&](const char* name) { return fit.count(name) > 0; };
+    const bool tolerance = given("--tolerance") || given("--tolerances");
+    const bool knots = flags.knots != "data" && flags.knots != "uniform";
+    const auto refuse = [](const char* words) { throw InvalidInput(words); };
+    if (given("--control-points") && knots)
+        refuse("--control-points and --knots FILE: the knots state the number of control points");
+    if (tolerance && given("--knots") && !knots)
+        refuse("--tolerance: knots are found by the fit, --knots says nothing");
+    if (given("--control-points") && given("--max-control-points"))
+        refuse("--max-control-points: it bounds a fit to a tolerance, --control-points states the "
+               "size");
+    if (given("--control-points") && given("--corners"))
+        refuse("--corners: they are for fits to a tolerance, not for a stated size");
+    if (given("--moving") && flags.method != "pia") refuse("--moving: it is for --method pia");
+    if (given("--smooth-order") && !given("--smooth")) refuse("--smooth-order: it needs --smooth");
+    if (given("--spacing") && !flags.heights) refuse("--spacing: it is for --heights");
+}
+
+} // namespace
+
 FitOptions options_of(const FitFlags& flags, const CLI::App& fit, const Samples& samples) {
+    check_together(flags, fit);
     FitOptions options;
     options.shape = shape_options(flags, fit.count("--closed") > 0, samples);
     options.tolerance = tolerance_options(flags, fit, samples);

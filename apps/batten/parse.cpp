@@ -74,4 +74,10 @@ std::size_t parse_choice(std::string_view option, std::string_view text,
     throw InvalidInput(unknown_name(fmt::format("value of {}", option), text, choices));
 }
 
+void one_value_each(CLI::App& app) {
+    for (CLI::Option* option : app.get_options())
+        if (!option->get_positional() && option->get_items_expected_max() > 1)
+            option->allow_extra_args(false);
+}
+
 } // namespace batten::command

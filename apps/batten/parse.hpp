@@ -3,6 +3,7 @@
 #include <batten/core/core.hpp>
 #include <batten/iterate/method.hpp>
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <string>
 #include <string_view>
@@ -25,5 +26,9 @@ Settings parse_settings(const std::vector<std::string>& entries);
 /// Position of `text` in `choices`; throws InvalidInput with the nearest when it is none of them.
 std::size_t parse_choice(std::string_view option, std::string_view text,
                          std::span<const std::string_view> choices);
+
+/// Makes every flag that may be repeated take one value each time: a file name that follows is not
+/// swallowed.
+void one_value_each(CLI::App& app);
 
 } // namespace batten::command

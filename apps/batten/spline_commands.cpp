@@ -26,6 +26,30 @@ std::vector<double> even_parameters(const KnotVector& axis, Index count) {
     return t;
 }
 
+/// Throws InvalidInput for a parameter outside an open axis's domain.
+void check_domain(const Spline& spline, const PointSet& table, const std::string& path) {
+    for (Index i = 0; i < table.size(); ++i)
+        for (Index k = 0; k < std::min(table.dim(), spline.axis_count()); ++k) {
+            const KnotVector& axis = spline.axis(k);
+            if (!axis.closed() && !(table(i, k) >= axis.begin() && table(i, k) <= axis.end()))
+                throw InvalidInput(
+                    fmt::format("{}: row {}: parameter {} is outside the domain [{}, "
+                                "{}] of axis {}",
+                                path, i, table(i, k), axis.begin(), axis.end(), k));
+        }
+}
+
+/// The points in the spline's space: points of the plane get a zero third coordinate beside a
+/// spline of a CAD file.
+Samples in_space_of(const Spline& spline, Samples samples) {
+    if (spline.dim() != 3 || samples.dim() != 2) return samples;
+    PointSet points(samples.size(), 3);
+    for (Index i = 0; i < samples.size(); ++i)
+        for (Index d = 0; d < 2; ++d) points(i, d) = samples.points(i, d);
+    samples.points = Points(std::move(points));
+    return samples;
+}
+
 void evaluate_spline(const std::string& path, const std::string& samples,
                      const std::string& parameters, const std::string& output,
                      std::vector<int> orders) {
@@ -33,8 +57,11 @@ void evaluate_spline(const std::string& path, const std::string& samples,
     if (samples.empty() == parameters.empty())
         throw InvalidInput("evaluate: one of --samples and --parameters is needed");
     if (orders.size() == 1) orders.resize(static_cast<std::size_t>(spline.axis_count()), 0);
-    if (!parameters.empty())
-        return write_points(output, evaluate(spline, read_table(parameters), orders));
+    if (!parameters.empty()) {
+        const PointSet table = read_table(parameters);
+        check_domain(spline, table, parameters);
+        return write_points(output, evaluate(spline, table, orders));
+    }
     std::vector<Index> counts = parse_shape("--samples", samples);
     if (counts.size() == 1) counts.resize(static_cast<std::size_t>(spline.axis_count()), counts[0]);
     if (static_cast<Index>(counts.size()) != spline.axis_count())
@@ -49,7 +76,7 @@ void evaluate_spline(const std::string& path, const std::string& samples,
 
 void compare(const std::string& spline_path, const std::string& points_path) {
     const Spline spline = read_spline(spline_path);
-    const Samples samples = read_points(points_path);
+    const Samples samples = in_space_of(spline, read_points(points_path));
     std::vector<double> distances;
     for (const ClosestPoint& found : closest_points(spline, samples.points))
         distances.push_back(found.distance);
@@ -106,7 +133,7 @@ void plot(const std::string& spline_path, const std::string& points_path, const 
                 .title = std::filesystem::path(spline_path).stem().string(),
                 .curvature_comb = comb};
     if (!points_path.empty()) {
-        samples = read_points(points_path);
+        samples = in_space_of(spline, read_points(points_path));
         scene.samples = &samples;
         if (spline.axis_count() < 3) { // of a volume no closest point is known
             for (const ClosestPoint& found : closest_points(spline, samples.points))
@@ -195,6 +222,7 @@ void add_convert(CLI::App& app) {
         ->required()
         ->group("Output");
     add_export_flags(*sub, flags->exported);
+    one_value_each(*sub);
     sub->footer("Examples:\n  batten convert part.json -o part.step --unit m\n"
                 "  batten convert upper.json lower.json -o wing.igs");
     sub->callback([flags] {

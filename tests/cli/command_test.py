@@ -155,6 +155,30 @@ class Refusals(Command):
         self.good("generate", "rose", "--samples", 30, "-o", "r.csv")
         self.good("generate", "peaks", "--samples", "9x9", "-o", "p.csv")
 
+    def test_flags_may_stand_before_the_file(self):
+        self.good("generate", "rose", "-o", "r.csv")
+        for words in (("-o", "a.json", "r.csv", "-n", 20, "-q"), ("--closed", "r.csv", "-n", 20, "-q"), ("-p", 3, "r.csv", "-n", 20), ("--set", "mu=0.05", "r.csv", "-n", 20, "-m", "lspia", "-q")):
+            self.good("fit", *words)
+        self.good("convert", "-o", "b.obj", "a.json")
+
+    def test_flags_that_say_nothing_are_refused(self):
+        self.good("generate", "rose", "-o", "r.csv")
+        self.good("fit", "r.csv", "-n", 9, "-q", "-o", "k.json")
+        for message, *words in (("--control-points and --knots FILE: the knots state the number of control points", "-n", 20, "--knots", "k.json"),
+                                ("--tolerance: knots are found by the fit, --knots says nothing", "-t", 1, "--knots", "uniform"),
+                                ("--max-control-points: it bounds a fit to a tolerance, --control-points states the size", "-n", 20, "--max-control-points", 5),
+                                ("--corners: they are for fits to a tolerance, not for a stated size", "-n", 20, "--corners", "3"),
+                                ("--moving: it is for --method pia", "-n", 20, "--moving", "3"),
+                                ("--smooth-order: it needs --smooth", "-n", 20, "--smooth-order", 3),
+                                ("--spacing: it is for --heights", "-n", 20, "--spacing", "2,2"),
+                                ("--interpolate all: a list like 0,20,40 or a file is needed", "-n", 20, "--interpolate", "all"),
+                                ("--report x.pdf: a page .html is written", "-n", 20, "--report", "x.pdf"),
+                                ("--date soon: a date like 2026-01-31T12:00:00 is needed", "-n", 20, "--date", "soon", "-o", "x.obj"),
+                                ("r.csv: it is the file of the points", "-n", 20, "-o", "r.csv")):
+            self.bad(2, message, "fit", "r.csv", *words)
+        self.bad(3, "o.csv:1:1: '1e400' is not a number", "info", self.write("o.csv", "1e400,2\n-1,4\n"))
+        self.bad(2, "p.txt: row 1: parameter 1.5 is outside the domain [0, 1] of axis 0", "evaluate", "k.json", "--parameters", self.write("p.txt", "0.5\n1.5\n"))
+
     def test_files(self):
         self.bad(3, "none.csv: cannot be read: No such file or directory", "fit", "none.csv", "-n", 8)
         self.bad(3, "e.csv: the file is empty", "fit", self.write("e.csv", ""), "-n", 8)

@@ -130,6 +130,25 @@ class Tolerance(unittest.TestCase):
         self.assertLess(np.linalg.norm(self.derivative(spline, 0) - [-2.5, 0.5]), 1e-12 * size * 10)
         self.assertLessEqual(largest_distance(spline, points), 1e-2 * (1 + 1e-9))
 
+    def test_tangents_keep_their_direction_on_every_airfoil(self):
+        files = sorted((SHARED / "airfoils").glob("*.dat"))
+        if not files:
+            self.skipTest("shared data absent: airfoils")
+        for file in files:
+            report = json.loads(subprocess.run([BATTEN, "fit", file, "-n", "9", "-q", "--summary", "-"], capture_output=True, text=True).stdout)
+            (self.folder / "t.csv").write_text(f"0,-1,0\n{report['samples'] - 1},1,0\n")
+            done = subprocess.run([BATTEN, "fit", file, "--tolerance", "0.001", "--interpolate", "ends", "--tangents", "t.csv", "-q", "-o", "o.json", "--summary", "s.json"],
+                                  cwd=self.folder, capture_output=True, text=True, timeout=60)
+            if done.returncode == 2:  # the section runs the other way there
+                self.assertRegex(done.stderr, "it points against the order of the samples; reverse its sign")
+                continue
+            self.assertIn(done.returncode, (0, 4), file.name)
+            spline, summary = json.loads((self.folder / "o.json").read_text()), json.loads((self.folder / "s.json").read_text())
+            # the rounding of the control points alone, over a knot span of 1e-4, is 3e-12 of a derivative
+            self.assertLess(summary["tangent_error"], 1e-11, file.name)
+            self.assertLess(self.derivative(spline, 0)[0], 0, file.name)
+            self.assertGreater(self.derivative(spline, 1)[0], 0, file.name)
+
     def test_a_seam_is_as_smooth_as_asked(self):
         path, points = self.data("glyph577.csv")
         for form, order in (("--closed", 2), ("--closed=C1", 1), ("--closed=C0", 0)):
@@ -270,6 +289,16 @@ class Tolerance(unittest.TestCase):
         self.assertLess(np.median(counts), 15)
         self.assertLessEqual(bent, 3)  # of 242; they say so
         self.assertLessEqual(astray, 5)  # 27 to 34 samples, none near a sharp nose: said in the verdict
+
+    def test_compare_finds_the_closest_point_of_a_wiggly_curve(self):
+        rng = np.random.default_rng(2)
+        x = np.linspace(0, 5, 400)
+        points = np.column_stack([x, np.sin(x) + 0.02 * rng.standard_normal(400)])
+        np.savetxt(self.folder / "noise.csv", points, delimiter=",", fmt="%.17g")
+        spline, _ = self.fit("noise.csv", "-n", 200)
+        words = subprocess.run([BATTEN, "compare", "o.json", "noise.csv"], cwd=self.folder, capture_output=True, text=True, check=True).stdout
+        ours = float(words.split("largest ")[1].split(" ")[0])
+        self.assertAlmostEqual(ours / largest_distance(spline, points), 1, 4)
 
     def test_noise_is_named_not_interpolated(self):
         angle = np.linspace(0, 2 * np.pi, 1_000_000)

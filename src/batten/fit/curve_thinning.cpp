@@ -213,7 +213,8 @@ void thin_out(const CurveTask& given, CurveWithin& fit) {
     spread_out(task, trial);
     fit.stages.emplace_back("spread", trial.knots.free_count());
     thin_in_batches(task, trial);
-    thin_one_by_one(task, trial);
+    constexpr Index many = 400; // control points: then each costs more time than it is worth
+    if (trial.knots.free_count() <= many) thin_one_by_one(task, trial);
     fit.stages.emplace_back("thinned", trial.knots.free_count());
 }
 

@@ -307,7 +307,7 @@ FitResult curve_within(const Samples& given, const FitOptions& options,
         limit > 0 ? limit : static_cast<Index>(most_part * static_cast<double>(samples.size())));
     const double noise = noise_level(samples.points);
     // on many samples third differences are noise alone: then no search is needed to know
-    const bool hopeless = samples.size() > 5000 && noise > smallest;
+    const bool hopeless = samples.size() > 1000 && noise > smallest;
     CurveWithin found =
         hopeless ? smooth_fit(task, noise, most) : few_knots(task, options.tolerance, most);
     if (!hopeless) calm_down(task, options.tolerance, most, smallest, found);

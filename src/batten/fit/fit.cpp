@@ -123,8 +123,22 @@ FitResult fit_fixed(const Samples& samples, FitOptions options) {
         held_constraints(axes, samples, result.parameters, options.hold);
     report.seconds.emplace_back("knots", watch.lap());
     stop_if_cancelled(options);
-    const PointSet control =
-        least_squares(axes, samples, result.parameters, constraints, options, report);
+    PointSet control;
+    try {
+        control = least_squares(axes, samples, result.parameters, constraints, options, report);
+    } catch (const SolverError& error) {
+        const bool plain = options.method.name == "auto" && report.method == "direct" &&
+                           constraints.empty() && !options.smooth.wanted &&
+                           options.hold.preserve == Preserve::nothing;
+        if (options.smooth.lambda > 0)
+            throw InvalidInput(fmt::format("smoothing by {}: {}; another factor may do",
+                                           options.smooth.lambda, error.what()));
+        if (!plain) throw;
+        report.method = "cg";
+        report.method_reason =
+            fmt::format("{}: an iteration leaves it where it starts", error.what());
+        control = least_squares(axes, samples, result.parameters, constraints, options, report);
+    }
     stop_if_cancelled(options);
     result.spline = Spline::from_free(axes, control);
     return result;

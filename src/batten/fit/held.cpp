@@ -220,15 +220,13 @@ double tangent_error(const Spline& spline, const Samples& samples, const Paramet
         std::vector<int> orders(static_cast<std::size_t>(spline.axis_count()), 0);
         orders[static_cast<std::size_t>(tangent.axis)] = 1;
         std::vector<double> got = spline(parameter_of(parameters, tangent.sample), orders);
-        const double length = length_of(got);
         const double wanted = length_of(tangent.value);
         const double factor = tangent.kind == TangentKind::derivative
                                   ? 1
                                   : dot(got, tangent.value) / (wanted * wanted);
         for (std::size_t d = 0; d < got.size(); ++d) got[d] -= factor * tangent.value[d];
-        const double scale = tangent.kind == TangentKind::derivative ? size : length;
-        const double error = factor > 0 && scale > 0 ? length_of(got) / scale
-                                                     : std::numeric_limits<double>::infinity();
+        const double error = factor > 0 && size > 0 ? length_of(got) / size
+                                                    : std::numeric_limits<double>::infinity();
         worst = std::max(worst, error);
     }
     return worst;

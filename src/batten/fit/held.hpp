@@ -26,8 +26,8 @@ Parameters parameters_for_boundaries(const Samples& samples, Parameters paramete
 KnotVector knots_for_boundaries(const KnotVector& knots, int axis,
                                 const std::vector<HeldBoundary>& boundaries);
 
-/// The largest part by which a held tangent is missed: the sine of the angle, or the difference of
-/// the derivatives over the data's size.
+/// By how much the held tangents are missed at most, as a part of the data's size: the derivative's
+/// part across the direction, or its difference from the value; infinite for one turned round.
 double tangent_error(const Spline& spline, const Samples& samples, const Parameters& parameters,
                      const std::vector<HeldTangent>& tangents);
 

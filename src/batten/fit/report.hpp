@@ -46,7 +46,7 @@ struct FitReport {
     Index interpolated = 0;       ///< samples that must be hit exactly
     double constraint_error = 0;  ///< largest distance from one of them
     Index tangents = 0;           ///< directions and derivatives that must hold
-    double tangent_error = 0;     ///< largest sine of an angle, or difference over the data's size
+    double tangent_error = 0;     ///< by how much they are missed, over the data's size
     Index boundaries = 0;         ///< boundaries that must hold
     Index inflections = -1;       ///< of the control polygon, where they are kept; else -1
     Index curve_inflections = -1; ///< of a planar curve fitted to a tolerance, those larger than a

@@ -68,7 +68,12 @@ class Scanner {
         double first = 0;
         const bool starts_with_number = parse(tokens_[0].text, first);
         if (in_notes_) return check_note(number, starts_with_number);
-        if (!starts_with_number && table_.rows() == 0 && may_be_title()) {
+        // a name does not start like a number: "1e400" or "1.5.2" is a number gone wrong
+        const char begin = tokens_[0].text.front();
+        const bool like_a_number = layout_ == TextLayout::table &&
+                                   ((begin >= '0' && begin <= '9') || begin == '.' ||
+                                    ((begin == '-' || begin == '+') && tokens_[0].text.size() > 1));
+        if (!starts_with_number && !like_a_number && table_.rows() == 0 && may_be_title()) {
             ++table_.title_lines;
             return;
         }

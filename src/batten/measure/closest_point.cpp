@@ -116,20 +116,48 @@ ClosestPoint refine(const Spline& spline, std::vector<double> t, std::span<const
     return {std::move(t), std::sqrt(best)};
 }
 
-ClosestPoint closest(const Spline& spline, const Net& net, std::span<const double> point) {
-    // the nearest few points of the net start a refinement each: the nearest alone can lie on the
-    // wrong branch
-    constexpr std::size_t starts = 4;
-    std::vector<std::pair<double, Index>> nearest;
-    for (Index k = 0; k < net.points.size(); ++k) {
-        const double d = distance(net.points[k], point);
-        if (nearest.size() == starts && d >= nearest.back().first) continue;
-        nearest.insert(std::ranges::upper_bound(nearest, std::pair(d, k)), {d, k});
-        if (nearest.size() > starts) nearest.pop_back();
+/// Places of the net's neighbours of place `at`, along every axis.
+void neighbours(const Net& net, Index at, std::vector<Index>& out) {
+    out.clear();
+    Index stride = 1;
+    for (std::size_t a = net.parameters.size(); a-- > 0;) {
+        const auto m = static_cast<Index>(net.parameters[a].size());
+        const Index here = at / stride % m;
+        if (here > 0) out.push_back(at - stride);
+        if (here + 1 < m) out.push_back(at + stride);
+        stride *= m;
     }
+}
+
+ClosestPoint closest(const Spline& spline, const Net& net, std::span<const double> point) {
+    // every place that is nearer than its neighbours may lead to another branch: the nearest start
+    // first, as long as what lies between them and their neighbours could still be nearer
+    constexpr std::size_t most_starts = 24;
+    std::vector<double> away(static_cast<std::size_t>(net.points.size()));
+    for (Index k = 0; k < net.points.size(); ++k)
+        away[static_cast<std::size_t>(k)] = distance(net.points[k], point);
+    const auto distance_of = [&](Index k) { return away[static_cast<std::size_t>(k)]; };
+    struct Start {
+        double least; ///< distance that a place near it may have
+        Index place;
+    };
+    std::vector<Start> starts;
+    std::vector<Index> near;
+    for (Index k = 0; k < net.points.size(); ++k) {
+        neighbours(net, k, near);
+        double reach = 0;
+        bool lowest = true;
+        for (Index n : near) {
+            lowest = lowest && distance_of(k) <= distance_of(n);
+            reach = std::max(reach, distance(net.points[k], net.points[n]));
+        }
+        if (lowest) starts.push_back({distance_of(k) - reach, k});
+    }
+    std::ranges::sort(starts, {}, [&](const Start& start) { return distance_of(start.place); });
     ClosestPoint best{{}, std::numeric_limits<double>::infinity()};
-    for (const auto& [d, k] : nearest) {
-        ClosestPoint found = refine(spline, net_parameter(net, k), point);
+    for (std::size_t k = 0; k < std::min(starts.size(), most_starts); ++k) {
+        if (k >= 4 && starts[k].least > best.distance) continue;
+        ClosestPoint found = refine(spline, net_parameter(net, starts[k].place), point);
         if (found.distance < best.distance) best = std::move(found);
     }
     return best;

@@ -9,10 +9,21 @@ namespace batten {
 
 namespace {
 
+constexpr Index chunk_size = 4096;
+
 std::vector<double> lengths(const PointSet& values, const Points& points) {
     std::vector<double> result(static_cast<std::size_t>(points.size()));
-    for (Index i = 0; i < points.size(); ++i)
-        result[static_cast<std::size_t>(i)] = distance(values[i], points[i]);
+    const Index dim = points.dim();
+    for_each_chunk((points.size() + chunk_size - 1) / chunk_size, [&](Index chunk) {
+        const Index end = std::min(points.size(), (chunk + 1) * chunk_size);
+        for (Index i = chunk * chunk_size; i < end; ++i) {
+            const double* a = values.data() + i * dim;
+            const double* b = points.data() + i * dim;
+            double square = 0;
+            for (Index d = 0; d < dim; ++d) square += (a[d] - b[d]) * (a[d] - b[d]);
+            result[static_cast<std::size_t>(i)] = std::sqrt(square);
+        }
+    });
     return result;
 }
 

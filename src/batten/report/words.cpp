@@ -36,7 +36,10 @@ std::string FitReport::brief() const {
         if (closures[k] == Closure::closed) shape[k] -= degree[k];
     return fmt::format(
         "{} of degree {}, {} control points{}: {} samples within {:.4g} (rms {:.4g}), {}", kind,
-        fmt::join(degree, "x"), fmt::join(shape, "x"), closed_axes(closures), samples,
+        fmt::join(degree, "x"), fmt::join(shape, "x"), closed_axes(closures),
+        set_aside.empty()
+            ? std::to_string(samples)
+            : fmt::format("{} of {}", samples - static_cast<Index>(set_aside.size()), samples),
         deviation.maximum, deviation.rms, to_string(termination));
 }
 
@@ -90,7 +93,13 @@ std::vector<std::pair<std::string, std::string>> FitReport::lines() const {
                  shown < set_aside.size() ? ", ..." : ""));
     }
     if (interpolated > 0)
-        line("exact", fmt::format("{} samples hit to {:.2g}", interpolated, constraint_error));
+        line(
+            "exact",
+            constraint_error <= 1e-8 * data_size
+                ? fmt::format("{} samples hit to {:.2g}", interpolated, constraint_error)
+                : fmt::format("{} samples NOT hit yet: missed by up to {:.2g}; more iterations, or "
+                              "--method direct",
+                              interpolated, constraint_error));
     if (tangents > 0)
         line("exact", fmt::format("{} {} held to {:.2g}", tangents,
                                   tangents == 1 ? "tangent" : "tangents", tangent_error));
@@ -98,10 +107,10 @@ std::vector<std::pair<std::string, std::string>> FitReport::lines() const {
         line("exact",
              fmt::format("{} {} held", boundaries, boundaries == 1 ? "boundary" : "boundaries"));
     if (inflections >= 0)
-        line("shape",
-             tolerance > 0 ? fmt::format("{} inflections in the control polygon, {} in the samples",
-                                         inflections, data_inflections)
-                           : fmt::format("{} inflections in the control polygon", inflections));
+        line("shape", tolerance > 0
+                          ? fmt::format("{} inflections in the control polygon, {} in the samples",
+                                        inflections, data_inflections)
+                          : fmt::format("{} inflections in the control polygon", inflections));
     std::string times;
     for (const auto& [stage, time] : seconds)
         times += fmt::format("{}{} {:.2g}", times.empty() ? "" : ", ", stage, time);

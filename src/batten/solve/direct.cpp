@@ -4,6 +4,7 @@
 #include <batten/solve/schur.hpp>
 
 #include <Eigen/Dense>
+#include <cmath>
 
 namespace batten {
 
@@ -14,34 +15,60 @@ PointSet solve_direct(const NormalSystem& system) {
 namespace {
 
 /// Lengths of the directions that leave the least error: the energy above the unconstrained
-/// minimum is (C P - d)^T S^{-1} (C P - d), quadratic in them.
+/// minimum is (C P - d)^T S^{-1} (C P - d), quadratic in them. A length that would turn its
+/// direction round, or all but vanish, becomes a small part of the unconstrained derivative's.
 std::vector<double> best_lengths(const Constraints& constraints, const PointSet& unconstrained,
                                  const SchurComplement& schur) {
+    constexpr double small_part = 0.1;
     const std::vector<Index>& rows = constraints.directions();
     const auto count = static_cast<Index>(rows.size());
-    PointSet gap = constraints.apply(unconstrained);
+    const auto row_of = [&](Index k) { return rows[static_cast<std::size_t>(k)]; };
+    const PointSet free_values = constraints.apply(unconstrained);
+    PointSet gap = free_values;
     add_scaled(gap, -1.0, constraints.with_lengths(std::vector<double>(rows.size(), 0.0)).values());
     const PointSet pull = schur.solve(gap);
     PointSet units(constraints.size(), count);
-    for (Index k = 0; k < count; ++k) units(rows[static_cast<std::size_t>(k)], k) = 1;
+    for (Index k = 0; k < count; ++k) units(row_of(k), k) = 1;
     const PointSet inverse = schur.solve(units);
     Eigen::MatrixXd matrix(count, count);
     Eigen::VectorXd right(count);
-    const auto direction = [&](Index k) {
-        return constraints.values()[rows[static_cast<std::size_t>(k)]];
-    };
+    Eigen::VectorXd least(count);
     const auto dot = [](std::span<const double> a, std::span<const double> b) {
         double sum = 0;
         for (std::size_t d = 0; d < a.size(); ++d) sum += a[d] * b[d];
         return sum;
     };
     for (Index k = 0; k < count; ++k) {
-        const Index row = rows[static_cast<std::size_t>(k)];
-        right[k] = dot(direction(k), pull[row]);
+        const auto direction = constraints.values()[row_of(k)];
+        const auto derivative = free_values[row_of(k)];
+        right[k] = dot(direction, pull[row_of(k)]);
+        least[k] = small_part * std::sqrt(dot(derivative, derivative));
         for (Index l = 0; l < count; ++l)
-            matrix(k, l) = inverse(row, l) * dot(direction(k), direction(l));
+            matrix(k, l) = inverse(row_of(k), l) * dot(direction, constraints.values()[row_of(l)]);
     }
-    const Eigen::VectorXd lengths = matrix.ldlt().solve(right);
+    Eigen::VectorXd lengths = matrix.ldlt().solve(right);
+    std::vector<bool> held(static_cast<std::size_t>(count), false);
+    for (bool any = true; any;) {
+        any = false;
+        for (Index k = 0; k < count; ++k)
+            if (!held[static_cast<std::size_t>(k)] && !(lengths[k] >= least[k])) {
+                held[static_cast<std::size_t>(k)] = true;
+                any = true;
+            }
+        if (!any) break;
+        Eigen::MatrixXd reduced = matrix;
+        Eigen::VectorXd rest = right;
+        for (Index k = 0; k < count; ++k)
+            if (held[static_cast<std::size_t>(k)]) {
+                rest -= matrix.col(k) * least[k];
+                reduced.row(k).setZero();
+                reduced.col(k).setZero();
+                reduced(k, k) = 1;
+            }
+        for (Index k = 0; k < count; ++k)
+            if (held[static_cast<std::size_t>(k)]) rest[k] = least[k];
+        lengths = reduced.ldlt().solve(rest);
+    }
     return {lengths.begin(), lengths.end()};
 }
 

@@ -181,17 +181,23 @@ TEST(Directions, get_the_lengths_that_leave_the_least_error) {
     Constraints constraints(2);
     const std::array first{1};
     constraints.add(axes, std::array{0.3}, {}, std::array{0.2, -0.1}, "point");
-    constraints.add_direction(axes, std::array{0.3}, first, std::array{3.0, 1.0}, "one");
-    constraints.add_direction(axes, std::array{0.8}, first, std::array{-1.0, 2.0}, "two");
+    // near the free fit's own directions, so that no length would turn round
+    Constraints probe(2);
+    for (double t : {0.3, 0.8}) probe.add(axes, std::array{t}, first, std::array{0.0, 0.0}, "");
+    const PointSet own = probe.apply(solve_direct(*system));
+    const std::array one{own(0, 0) - 0.2 * own(0, 1), own(0, 1) + 0.2 * own(0, 0)};
+    const std::array two{own(1, 0) + 0.1 * own(1, 1), own(1, 1) - 0.1 * own(1, 0)};
+    constraints.add_direction(axes, std::array{0.3}, first, one, "one");
+    constraints.add_direction(axes, std::array{0.8}, first, two, "two");
     const Constraints local = constraints.centred(system->centre());
     const PointSet best = solve_direct(*system, local);
     const PointSet values = local.apply(best);
-    EXPECT_NEAR(values(1, 0) * 1.0 - values(1, 1) * 3.0, 0, 1e-12);
-    EXPECT_NEAR(values(2, 0) * 2.0 + values(2, 1) * 1.0, 0, 1e-12);
+    EXPECT_NEAR(values(1, 0) * one[1] - values(1, 1) * one[0], 0, 1e-10);
+    EXPECT_NEAR(values(2, 0) * two[1] - values(2, 1) * two[0], 0, 1e-10);
     const auto length = [&](Index row, double x, double y) {
         return (values(row, 0) * x + values(row, 1) * y) / std::hypot(x, y);
     };
-    const std::array lengths{length(1, 3, 1), length(2, -1, 2)};
+    const std::array lengths{length(1, one[0], one[1]), length(2, two[0], two[1])};
     const double least = system->energy(best);
     EXPECT_NEAR(system->energy(solve_direct(*system, local.with_lengths(lengths))), least,
                 1e-10 * std::abs(least));

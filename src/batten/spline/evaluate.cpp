@@ -105,13 +105,14 @@ PointSet evaluate_grid(const Spline& spline, const std::vector<std::vector<doubl
         std::vector<double> next(static_cast<std::size_t>(outer * m * inner));
         std::vector<Local> basis;
         for (double t : axes[a]) basis.push_back(local_basis(knots, t, order_of(orders, a)));
-        for_each_chunk(outer, [&](Index o) {
-            for (Index j = 0; j < m; ++j) {
-                const Local& local = basis[static_cast<std::size_t>(j)];
-                double* out = next.data() + (o * m + j) * inner;
+        const Index rows = std::max<Index>(1, chunk_size / inner);
+        for_each_chunk((outer * m + rows - 1) / rows, [&](Index chunk) {
+            for (Index row = chunk * rows; row < std::min(outer * m, (chunk + 1) * rows); ++row) {
+                const Local& local = basis[static_cast<std::size_t>(row % m)];
+                double* out = next.data() + row * inner;
                 for (int r = 0; r <= knots.degree(); ++r) {
                     const double w = local.value[static_cast<std::size_t>(r)];
-                    const double* in = values.data() + (o * n + local.first + r) * inner;
+                    const double* in = values.data() + (row / m * n + local.first + r) * inner;
                     for (Index k = 0; k < inner; ++k) out[k] += w * in[k];
                 }
             }

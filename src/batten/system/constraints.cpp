@@ -139,13 +139,13 @@ std::string Constraints::clash_words(std::span<const double> how, Index last) co
     double gap = 0;
     double scale = 0;
     double largest = 0;
-    bool free_length = false;
+    std::vector<std::pair<Index, double>> free_rows; // rows of free length and their parts
     for (double part : how) largest = std::max(largest, std::abs(part));
     for (Index j = 0; j <= last; ++j) {
         const double part = how[static_cast<std::size_t>(j)];
         if (std::abs(part) <= 1e-8 * largest) continue;
         involved.push_back(names_[static_cast<std::size_t>(j)]);
-        free_length = free_length || std::ranges::binary_search(directions_, j);
+        if (std::ranges::binary_search(directions_, j)) free_rows.emplace_back(j, part);
         for (std::size_t d = 0; d < clash.size(); ++d) {
             const double value = part * values_(j, static_cast<Index>(d));
             clash[d] += value;
@@ -153,7 +153,10 @@ std::string Constraints::clash_words(std::span<const double> how, Index last) co
         }
     }
     for (double x : clash) gap = std::max(gap, std::abs(x));
-    if (gap <= 1e-9 * scale && !free_length) return {};
+    // two directions at one place follow from each other when they are the same
+    const bool same_direction = free_rows.size() == 2 && involved.size() == 2 &&
+                                free_rows[0].second * free_rows[1].second < 0;
+    if (gap <= 1e-9 * scale && (free_rows.empty() || same_direction)) return {};
     return fmt::format("constraints contradict each other: {}", fmt::join(involved, ", "));
 }
 
