@@ -74,9 +74,30 @@ void evaluate_spline(const std::string& path, const std::string& samples,
                  counts.size() > 1 ? counts : std::vector<Index>{});
 }
 
-void compare(const std::string& spline_path, const std::string& points_path) {
+/// How a file of points beside a spline is read.
+struct PointFlags {
+    std::string points;
+    bool heights = false;
+    std::string spacing = "1,1";
+};
+
+void add_point_flags(CLI::App& app, PointFlags& flags) {
+    app.add_flag("--heights", flags.heights,
+                 "The points are a table of heights over a regular grid");
+    app.add_option("--spacing", flags.spacing, "Grid distances DX,DY of --heights")
+        ->capture_default_str();
+}
+
+Samples points_of(const PointFlags& flags) {
+    ReadOptions options;
+    options.heights = flags.heights;
+    options.spacing = parse_spacing(flags.spacing);
+    return read_points(flags.points, options);
+}
+
+void compare(const std::string& spline_path, const PointFlags& points) {
     const Spline spline = read_spline(spline_path);
-    const Samples samples = in_space_of(spline, read_points(points_path));
+    const Samples samples = in_space_of(spline, points_of(points));
     std::vector<double> distances;
     for (const ClosestPoint& found : closest_points(spline, samples.points))
         distances.push_back(found.distance);
@@ -121,7 +142,7 @@ void describe_points(const std::string& path) {
     for (const std::string& note : samples.notes) fmt::print("  {}\n", note);
 }
 
-void plot(const std::string& spline_path, const std::string& points_path, const std::string& output,
+void plot(const std::string& spline_path, const PointFlags& points, const std::string& output,
           bool comb) {
     if (output != "-" && extension(output) != ".svg")
         throw InvalidInput(fmt::format("plot: {}: a picture .svg is written", output));
@@ -132,8 +153,8 @@ void plot(const std::string& spline_path, const std::string& points_path, const 
     Scene scene{.spline = spline,
                 .title = std::filesystem::path(spline_path).stem().string(),
                 .curvature_comb = comb};
-    if (!points_path.empty()) {
-        samples = in_space_of(spline, read_points(points_path));
+    if (!points.points.empty()) {
+        samples = in_space_of(spline, points_of(points));
         scene.samples = &samples;
         if (spline.axis_count() < 3) { // of a volume no closest point is known
             for (const ClosestPoint& found : closest_points(spline, samples.points))
@@ -170,12 +191,14 @@ void add_evaluate(CLI::App& app) {
 
 void add_compare(CLI::App& app) {
     struct Flags {
-        std::string spline, points;
+        std::string spline;
+        PointFlags points;
     };
     CLI::App* sub = app.add_subcommand("compare", "Distances of points from a spline");
     auto flags = std::make_shared<Flags>();
     sub->add_option("SPLINE", flags->spline, "Spline .json .step .iges")->required();
-    sub->add_option("POINTS", flags->points, "Points")->required();
+    sub->add_option("POINTS", flags->points.points, "Points")->required();
+    add_point_flags(*sub, flags->points);
     sub->footer("Example:\n  batten compare part.json measured.csv");
     sub->callback([flags] { compare(flags->spline, flags->points); });
 }
@@ -191,14 +214,16 @@ void add_info(CLI::App& app) {
 
 void add_plot(CLI::App& app) {
     struct Flags {
-        std::string spline, points, output = "-";
+        std::string spline, output = "-";
+        PointFlags points;
         bool comb = false;
     };
     CLI::App* sub =
         app.add_subcommand("plot", "A picture of a spline, and of points beside it, as SVG");
     auto flags = std::make_shared<Flags>();
     sub->add_option("SPLINE", flags->spline, "Spline .json .step .iges")->required();
-    sub->add_option("POINTS", flags->points, "Points, coloured by their distance from it");
+    sub->add_option("POINTS", flags->points.points, "Points, coloured by their distance from it");
+    add_point_flags(*sub, flags->points);
     sub->add_option("--output,-o", flags->output, "Picture .svg, - for standard output")
         ->capture_default_str();
     sub->add_flag("--comb", flags->comb, "The curvature comb of a planar curve");

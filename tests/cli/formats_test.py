@@ -243,6 +243,7 @@ class Formats(unittest.TestCase):
             back = json.loads((self.folder / "back.json").read_text())
             self.assertLess(abs(np.array(back["control_points"])[:, :2] - np.array(wing["control_points"])).max(), 1e-9)
             self.assertLess(abs(np.array(back["knots"]) - np.array(wing["knots"])).max(), 1e-9)
+        self.assertIn("largest 0.000", self.batten("compare", "w.step", "wing.csv"))  # points of the plane beside a curve of space
         first = (self.folder / "w.step").read_bytes()
         self.assertEqual(self.batten("fit", "wing.csv", "-t", "1e-3", "--interpolate", "ends", "-q", "-o", "w.step"), "")
         self.assertTrue(first == (self.folder / "w.step").read_bytes())
@@ -259,6 +260,9 @@ class Formats(unittest.TestCase):
             self.assertTrue(svg.tag.endswith("svg"))
             self.assertGreater(len(list(svg.iter("{http://www.w3.org/2000/svg}path"))), 1)
         self.batten("plot", "peaks.json", "peaks.npy", "-o", "p.svg")
+        np.save(self.folder / "heights.npy", np.load(self.folder / "peaks.npy")[..., 2])
+        self.batten("fit", "heights.npy", "--heights", "--spacing", "0.05,0.066", "-n", "20x25", "-q", "-o", "h.json")
+        self.assertIn("14641 points", self.batten("compare", "h.json", "heights.npy", "--heights", "--spacing", "0.05,0.066"))
         self.assertIn("deviation", (self.folder / "p.svg").read_text())
         self.assertEqual(self.batten("plot", "peaks.json", "-o", "p.png", status=2), "batten: plot: p.png: a picture .svg is written\n")
 
