@@ -123,7 +123,9 @@ CurveWithin few_knots(CurveTask& task, const ToleranceOptions& options, Index mo
             }
         }
     }
-    if (best.met) thin_out(task, best);
+    // what is wild is searched again before anything is taken out
+    const bool wild = task.roughness == 0 && between(task, best.trial) > wild_part;
+    if (best.met && !wild) thin_out(task, best);
     return best;
 }
 
@@ -243,11 +245,14 @@ double shown_roughness(const CurveTask& task) {
 /// samples show of it costs a small part of the tolerance.
 void calm_down(CurveTask& task, const ToleranceOptions& options, Index most, double tolerance,
                CurveWithin& found) {
-    if (found.met && between(task, found.trial) <= 1) return;
+    if (!found.trial.control.empty() && found.met && between(task, found.trial) <= 1) return;
+    const bool unthinned = found.met && between(task, found.trial) > wild_part;
     const double shown = std::max(shown_roughness(task), 1e-300);
     const double noise_part = noise_level(task.samples.points) / tolerance;
-    if (noise_part < 0.3 || task.samples.size() > 5000) return; // no noise to be wild about
+    const bool noisy = noise_part >= 0.3 && task.samples.size() <= 5000;
+    bool calmed = false;
     for (double part : {0.1, 1.0}) {
+        if (!noisy || (calmed && between(task, found.trial) <= wild_part)) break;
         CurveTask calmer = task;
         calmer.roughness = part * tolerance * tolerance / shown;
         CurveWithin again = few_knots(calmer, options, most);
@@ -256,8 +261,9 @@ void calm_down(CurveTask& task, const ToleranceOptions& options, Index most, dou
         if (!better) continue;
         found = std::move(again);
         task.roughness = calmer.roughness;
-        if (between(task, found.trial) <= wild_part) return;
+        calmed = true;
     }
+    if (unthinned && !calmed) thin_out(task, found);
 }
 
 constexpr Index few_enough = 40; // control points for which a second search takes little time
