@@ -124,8 +124,9 @@ CurveWithin few_knots(CurveTask& task, const ToleranceOptions& options, Index mo
         }
     }
     // what is wild is searched again before anything is taken out
+    if (!best.met) return best;
     const bool wild = task.roughness == 0 && between(task, best.trial) > wild_part;
-    if (best.met && !wild) thin_out(task, best);
+    if (!wild) thin_out(task, best);
     return best;
 }
 

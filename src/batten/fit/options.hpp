@@ -18,8 +18,8 @@ struct ShapeOptions {
     /// Free control points per axis.
     std::vector<Index> control_points{};
     std::vector<Closure> closures{Closure::open};
-    /// Order of the derivatives that a closed curve may have jump at its first sample is above
-    /// this: 0 lets it bend there; degree - 1 (-1 stands for it) is as smooth as elsewhere.
+    /// Highest derivative of a closed curve that is continuous at its first sample: 0 lets it bend
+    /// there; degree - 1 (-1 stands for it) is as smooth as elsewhere.
     int seam_continuity = -1;
     Parametrization parametrization = Parametrization::chord;
     /// Given parameters, in place of `parametrization`.
@@ -48,7 +48,8 @@ struct MethodOptions {
     std::vector<Index> moving{};
 };
 
-/// What of the initial polygon's shape a planar curve's iteration keeps at every step.
+/// What of its shape a planar curve's control polygon keeps: in an iteration at every step, that
+/// of the initial polygon; within a tolerance, that of the samples.
 enum class Preserve {
     nothing,
     convexity,   ///< a convex polygon stays convex

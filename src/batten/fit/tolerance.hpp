@@ -12,7 +12,7 @@ namespace batten {
 /// Not reaching the tolerance is no error: the report's termination is tolerance_not_met, the
 /// verdict says why, and the spline is the best smooth one found. More than nine tenths of the
 /// samples are never used as control points. Throws InvalidInput for a tolerance that is not
-/// positive, or for a cloud.
+/// positive.
 FitResult fit_to_tolerance(const Samples& samples, const FitOptions& options);
 
 /// One tolerance per sample. Throws InvalidInput unless there is one for each, positive and finite.
