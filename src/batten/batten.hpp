@@ -20,5 +20,5 @@
 #include <batten/iterate/iterate.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/fit/fit.hpp>
-#include <batten/fit/tolerance.hpp>
+#include <batten/search/tolerance.hpp>
 #include <batten/report/html.hpp>

@@ -1,15 +1,15 @@
 #include <batten/fit/fit.hpp>
 
 #include <batten/core/stopwatch.hpp>
-#include <batten/fit/epia.hpp>
-#include <batten/fit/held.hpp>
-#include <batten/fit/outliers.hpp>
-#include <batten/fit/pia.hpp>
-#include <batten/fit/plan.hpp>
-#include <batten/fit/run.hpp>
-#include <batten/fit/smoothing.hpp>
-#include <batten/fit/tolerance.hpp>
+#include <batten/drivers/epia_driver.hpp>
+#include <batten/drivers/least_squares.hpp>
+#include <batten/drivers/pia_driver.hpp>
 #include <batten/iterate/methods.hpp>
+#include <batten/parametrize/noise_aware.hpp>
+#include <batten/problem/held.hpp>
+#include <batten/problem/plan.hpp>
+#include <batten/robust/outliers.hpp>
+#include <batten/search/tolerance.hpp>
 #include <batten/system/collocation.hpp>
 
 #include <fmt/format.h>

@@ -1,16 +1,9 @@
 #pragma once
 
-#include <batten/fit/options.hpp>
-#include <batten/fit/report.hpp>
+#include <batten/problem/options.hpp>
+#include <batten/problem/result.hpp>
 
 namespace batten {
-
-/// A fitted spline and the account of it.
-struct FitResult {
-    Spline spline;
-    FitReport report;
-    Parameters parameters;
-};
 
 /// Fits a B-spline with a stated number of control points (or stated knots) to the samples by least
 /// squares.

@@ -1,4 +1,4 @@
-#include <batten/fit/report.hpp>
+#include <batten/problem/report.hpp>
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include <batten/fit/report.hpp>
+#include <batten/problem/report.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>

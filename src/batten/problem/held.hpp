@@ -1,0 +1,34 @@
+#pragma once
+
+#include <batten/problem/options.hpp>
+#include <batten/system/constraints.hpp>
+
+namespace batten {
+
+/// Throws InvalidInput, naming the entry, when what must hold does not fit the samples: indices out
+/// of range or given twice, tangents of another dimension, of no length or against the order of a
+/// sequence, boundaries of an axis that is closed or does not exist, of another degree or
+/// dimension.
+void check_held(const HoldOptions& hold, const Samples& samples, const std::vector<int>& degree,
+                const std::vector<Closure>& closures);
+
+/// The equalities on the free control points over given knots. The boundaries' knots must be in
+/// them (knots_for_boundaries).
+Constraints held_constraints(const std::vector<KnotVector>& axes, const Samples& samples,
+                             const Parameters& parameters, const HoldOptions& hold);
+
+/// Parameters of a grid whose boundaries are given: along each axis those of its boundary samples'
+/// closest points on the boundaries, averaged over these.
+Parameters parameters_for_boundaries(const Samples& samples, Parameters parameters,
+                                     const std::vector<HeldBoundary>& boundaries);
+
+/// The axis's knots with those of the boundaries in place of the nearest others.
+KnotVector knots_for_boundaries(const KnotVector& knots, int axis,
+                                const std::vector<HeldBoundary>& boundaries);
+
+/// By how much the held tangents are missed at most, as a part of the data's size: the derivative's
+/// part across the direction, or its difference from the value; infinite for one turned round.
+double tangent_error(const Spline& spline, const Samples& samples, const Parameters& parameters,
+                     const std::vector<HeldTangent>& tangents);
+
+} // namespace batten

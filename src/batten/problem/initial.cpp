@@ -1,0 +1,159 @@
+#include <batten/problem/plan.hpp>
+
+#include <batten/spline/spline.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+namespace batten {
+
+namespace {
+
+/// Index of the sample that starts control point i of n on an axis of m samples.
+Index start_sample(const KnotVector& knots, const std::vector<double>& t, Index i) {
+    const Index n = knots.free_count();
+    const auto m = static_cast<Index>(t.size());
+    if (!knots.closed()) // [HuangWang2020, eq. 38], whose last line has n for m
+        return i == n - 1 ? m - 1 : m * i / (n - 1);
+    double greville = 0;
+    for (Index k = i + 1; k <= i + knots.degree(); ++k) greville += knots[k] / knots.degree();
+    const double at = knots.wrapped(greville);
+    const auto after = std::ranges::lower_bound(t, at) - t.begin();
+    if (after == m) return m - 1;
+    return after > 0 && at - t[static_cast<std::size_t>(after - 1)] <
+                            t[static_cast<std::size_t>(after)] - at
+               ? after - 1
+               : after;
+}
+
+/// Index of the value nearest to t in ascending values.
+Index nearest(const std::vector<double>& values, double t) {
+    const auto after = std::ranges::lower_bound(values, t) - values.begin();
+    if (after == static_cast<Index>(values.size())) return after - 1;
+    if (after == 0) return 0;
+    return t - values[static_cast<std::size_t>(after - 1)] <
+                   values[static_cast<std::size_t>(after)] - t
+               ? after - 1
+               : after;
+}
+
+/// Gives control points without a sample of their own their nearest neighbour's, ring by ring along
+/// the axes.
+void fill_holes(PointSet& control, std::vector<double>& distances,
+                const std::vector<Index>& shape) {
+    constexpr double unset = std::numeric_limits<double>::infinity();
+    for (bool holes = true; holes;) {
+        holes = false;
+        const std::vector<double> before = distances;
+        for (Index i = 0; i < control.size(); ++i) {
+            if (before[static_cast<std::size_t>(i)] != unset) continue;
+            holes = true;
+            Index stride = 1;
+            Index rest = i;
+            for (std::size_t a = shape.size(); a-- > 0;) {
+                const Index at = rest % shape[a];
+                for (Index step : {-1, 1}) {
+                    if (at + step < 0 || at + step >= shape[a]) continue;
+                    const Index other = i + step * stride;
+                    if (before[static_cast<std::size_t>(other)] == unset) continue;
+                    std::ranges::copy(control[other], control[i].begin());
+                    distances[static_cast<std::size_t>(i)] = 0;
+                }
+                rest /= shape[a];
+                stride *= shape[a];
+            }
+        }
+    }
+}
+
+/// Greville abscissae of the free control points, ascending per axis.
+std::vector<std::vector<double>> free_greville(const std::vector<KnotVector>& axes) {
+    std::vector<std::vector<double>> greville;
+    for (const KnotVector& axis : axes) {
+        greville.push_back(greville_abscissae(axis));
+        greville.back().resize(static_cast<std::size_t>(axis.free_count()));
+    }
+    return greville;
+}
+
+/// The control point nearest to a sample in the parameters, and how far away.
+struct Nearest {
+    Index control;
+    double away;
+};
+
+Nearest nearest_control(std::span<const double> parameter, const std::vector<KnotVector>& axes,
+                        const std::vector<std::vector<double>>& greville) {
+    Nearest result{0, 0};
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+        const double t = axes[a].wrapped(parameter[a]);
+        const Index at = nearest(greville[a], t);
+        result.control = result.control * axes[a].free_count() + at;
+        result.away += std::abs(t - greville[a][static_cast<std::size_t>(at)]) / axes[a].length();
+    }
+    return result;
+}
+
+/// The sample nearest in the parameters to each control point's Greville abscissae.
+PointSet nearest_samples(const Samples& samples, const Parameters& parameters,
+                         const std::vector<KnotVector>& axes, PointSet control) {
+    const auto greville = free_greville(axes);
+    std::vector<double> distances(static_cast<std::size_t>(control.size()),
+                                  std::numeric_limits<double>::infinity());
+    for (Index j = 0; j < samples.size(); ++j) {
+        const Nearest found = nearest_control(parameters.scattered[j], axes, greville);
+        double& closest = distances[static_cast<std::size_t>(found.control)];
+        if (found.away >= closest) continue;
+        closest = found.away;
+        std::ranges::copy(samples.points[j], control[found.control].begin());
+    }
+    fill_holes(control, distances, free_shape(axes));
+    return control;
+}
+
+} // namespace
+
+SampleGroups nearest_groups(const Parameters& parameters, const std::vector<KnotVector>& axes) {
+    const auto greville = free_greville(axes);
+    std::vector<Index> owner;
+    for (Index j = 0; j < parameters.scattered.size(); ++j)
+        owner.push_back(nearest_control(parameters.scattered[j], axes, greville).control);
+    Index controls = 1;
+    for (Index n : free_shape(axes)) controls *= n;
+    return {std::move(owner), controls};
+}
+
+PointSet initial_control(const Samples& samples, const Parameters& parameters,
+                         const std::vector<KnotVector>& axes, const MethodOptions& options) {
+    const std::vector<Index> shape = free_shape(axes);
+    Index total = 1;
+    for (Index n : shape) total *= n;
+    if (options.initial == Initial::given) {
+        if (options.control.size() != total || options.control.dim() != samples.dim())
+            throw InvalidInput(fmt::format(
+                "initial control points: {} of dimension {} given, {} of dimension {} needed",
+                options.control.size(), options.control.dim(), total, samples.dim()));
+        return options.control;
+    }
+    PointSet control(total, samples.dim());
+    if (options.initial == Initial::zero) return control;
+    if (parameters.is_scattered())
+        return nearest_samples(samples, parameters, axes, std::move(control));
+    const std::vector<Index> grid = samples.shape();
+    for (Index k = 0; k < total; ++k) {
+        Index rest = k;
+        Index sample = 0;
+        Index stride = 1;
+        for (std::size_t a = shape.size(); a-- > 0;) {
+            sample += start_sample(axes[a], parameters.axes[a], rest % shape[a]) * stride;
+            rest /= shape[a];
+            stride *= grid[a];
+        }
+        std::ranges::copy(samples.points[sample], control[k].begin());
+    }
+    return control;
+}
+
+} // namespace batten

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <batten/search/curve_trial.hpp>
+
+#include <vector>
+
+namespace batten {
+
+/// Rounds of settle() that a trial is worth when much depends on it.
+inline constexpr int trial_rounds = 16;
+
+/// Weights to start from: least squares in parts of each sample's tolerance, times the caller's
+/// weights.
+std::vector<double> first_weights(const CurveTask& task);
+
+/// Interior knots with their multiplicities: of a closed axis without the seam's.
+std::vector<double> interior_knots(const KnotVector& knots);
+
+/// Knots over the same domain with other interior ones.
+KnotVector with_interior(const CurveTask& task, const KnotVector& old,
+                         const std::vector<double>& interior);
+
+/// Knots that the search keeps, ascending: of full multiplicity at corners, as many as its
+/// continuity takes at a closed curve's seam.
+std::vector<double> lasting_knots(const CurveTask& task);
+
+/// Adds these to ascending others.
+std::vector<double> with_lasting_knots(const CurveTask& task, std::vector<double> interior);
+
+/// Part of what is allowed between samples that the trial uses, at most 1 being good.
+double between(const CurveTask& task, const CurveTrial& trial);
+
+} // namespace batten

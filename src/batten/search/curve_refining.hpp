@@ -1,0 +1,32 @@
+#pragma once
+
+#include <batten/search/curve_trial.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace batten {
+
+/// A curve fitted to a tolerance, and the count of control points after each stage.
+struct CurveWithin {
+    CurveTrial trial;
+    bool met = false;
+    std::vector<std::pair<std::string, Index>> stages;
+};
+
+/// First half of the search for few knots: refines where the error is until every sample is within
+/// tolerance and the curve does nothing odd between them. `most_control_points`: not more than
+/// that. Bounded in rounds.
+CurveWithin refined(const CurveTask& task, Index most_control_points);
+
+/// A fit whose task has got a limit on inflections since: refined from where it stands until it is
+/// within tolerance under the limit, too. Bounded in rounds.
+CurveWithin refined_further(const CurveTask& task, const CurveWithin& fit,
+                            Index most_control_points);
+
+/// Second half: spreads fewer knots anew, then takes out those that are not needed, batch by batch
+/// and one by one. Bounded in trials.
+void thin_out(const CurveTask& task, CurveWithin& fit);
+
+} // namespace batten

@@ -1,0 +1,182 @@
+#include <batten/search/curve_trial.hpp>
+
+#include <batten/basis/place_knots.hpp>
+#include <batten/problem/held.hpp>
+#include <batten/shape/polygon.hpp>
+#include <batten/solve/direct.hpp>
+#include <batten/solve/keep_shape.hpp>
+#include <batten/spline/curve_pieces.hpp>
+#include <batten/system/collocation.hpp>
+#include <batten/system/factored_system.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace batten {
+
+namespace {
+
+PointSet solve(const CurveTask& task, const CurveTrial& trial) {
+    const auto origin = task.samples.points[0];
+    BandedSystem system(trial.knots, {origin.begin(), origin.end()});
+    system.add(trial.parameters, task.samples.points, trial.weights);
+    if (task.roughness > 0) system.add_roughness(task.roughness, 2);
+    Constraints exact(task.samples.dim());
+    if (task.hold.equalities())
+        exact = held_constraints({trial.knots}, task.samples, {{trial.parameters}, {}}, task.hold)
+                    .centred(system.centre());
+    const PointSet control = task.most_inflections >= 0
+                                 ? solve_with_inflections(system, exact, task.most_inflections)
+                                 : solve_direct(system, exact);
+    return uncentred(control, system.centre());
+}
+
+/// Makes the samples that must be hit look far out, so that knots go to them.
+void mark_held(const CurveTask& task, CurveTrial& trial) {
+    std::ranges::fill(trial.ratio, 0.0);
+    for (Index i : task.hold.interpolate) trial.ratio[static_cast<std::size_t>(i)] = 10;
+    for (const HeldTangent& tangent : task.hold.tangents)
+        trial.ratio[static_cast<std::size_t>(tangent.sample)] = 10;
+}
+
+constexpr double misshapen = 1.25; // stands for a distance that is not reached
+
+/// Whether the control polygon bends no more often than it may.
+bool shape_kept(const CurveTask& task, const CurveTrial& trial) {
+    return task.most_inflections < 0 ||
+           inflection_count(trial.control, task.closure) <= task.most_inflections;
+}
+
+/// One Gauss-Newton step of each sample's parameter towards its closest point, kept in order.
+void correct_parameters(const CurveTask& task, const CurvePieces& pieces, CurveTrial& trial) {
+    const std::vector<double> old = trial.parameters;
+    std::vector<double>& t = trial.parameters;
+    const std::size_t m = t.size();
+    const bool open = task.closure == Closure::open;
+    for (std::size_t i = 0; i < m; ++i) {
+        if (open && (i == 0 || i + 1 == m)) continue; // the ends stay at the ends
+        if (std::ranges::binary_search(task.fixed, static_cast<Index>(i))) continue;
+        const CurvePoint at = pieces(old[i]);
+        double slope = 0;
+        double curvature = 0;
+        double bend = 0;
+        for (Index d = 0; d < task.samples.dim(); ++d) {
+            const auto k = static_cast<std::size_t>(d);
+            const double gap = task.samples.points(static_cast<Index>(i), d) - at.point[k];
+            slope += gap * at.first[k];
+            curvature += at.first[k] * at.first[k];
+            bend += gap * at.second[k];
+        }
+        if (!(curvature > 0)) continue;
+        const double hessian = curvature - bend;
+        const double step = slope / (hessian > 0.3 * curvature ? hessian : curvature);
+        const double low =
+            i > 0 ? (old[i - 1] + old[i]) / 2 : (open ? old[i] : trial.knots.begin());
+        const double high =
+            i + 1 < m ? (old[i] + old[i + 1]) / 2 : (open ? old[i] : trial.knots.end());
+        t[i] = std::clamp(old[i] + step, std::min(low, old[i]), std::max(high, old[i]));
+    }
+}
+
+void measure(const CurveTask& task, const CurvePieces& pieces, CurveTrial& trial) {
+    trial.worst = 0;
+    for (std::size_t i = 0; i < trial.parameters.size(); ++i) {
+        const CurvePoint at = pieces(trial.parameters[i]);
+        double square = 0;
+        for (Index d = 0; d < task.samples.dim(); ++d) {
+            const double gap = task.samples.points(static_cast<Index>(i), d) -
+                               at.point[static_cast<std::size_t>(d)];
+            square += gap * gap;
+        }
+        trial.ratio[i] = std::sqrt(square) / task.tolerance[i];
+        trial.worst = std::max(trial.worst, trial.ratio[i]);
+    }
+    if (!shape_kept(task, trial)) trial.worst = std::max(trial.worst, misshapen);
+    if (!std::isfinite(trial.worst)) trial.worst = std::numeric_limits<double>::infinity();
+}
+
+/// Lawson's iteration, damped: a sample's weight follows its part of the largest error.
+void reweigh(CurveTrial& trial) {
+    double total = 0;
+    for (std::size_t i = 0; i < trial.weights.size(); ++i) {
+        trial.weights[i] *= 0.25 + trial.ratio[i] / trial.worst;
+        total += trial.weights[i];
+    }
+    const double scale = static_cast<double>(trial.weights.size()) / total;
+    for (double& w : trial.weights) w = std::max(1e-8, w * scale);
+}
+
+/// Shifts knots so that spans with more error get shorter: the spans' lengths follow error^(-1 /
+/// (degree + 1)), half-way.
+void shift_knots(const CurveTask& task, CurveTrial& trial) {
+    const std::vector<double> breaks = trial.knots.breakpoints();
+    if (breaks.size() < 3 ||
+        static_cast<Index>(breaks.size()) - 1 != trial.knots.control_count() - task.degree)
+        return; // multiple knots mark corners: they stay
+    std::vector<double> error(breaks.size() - 1, 0);
+    std::size_t span = 0;
+    for (std::size_t i = 0; i < trial.parameters.size(); ++i) {
+        while (span + 1 < error.size() && trial.parameters[i] >= breaks[span + 1]) ++span;
+        error[span] = std::max(error[span], trial.ratio[i]);
+    }
+    constexpr double relaxation = 0.5;
+    std::vector<double> length;
+    double total = 0;
+    for (std::size_t s = 0; s < error.size(); ++s) {
+        const double part = std::clamp(error[s] / trial.worst, 0.05, 1.0);
+        length.push_back((breaks[s + 1] - breaks[s]) *
+                         std::pow(part, -relaxation / (task.degree + 1)));
+        total += length.back();
+    }
+    std::vector<double> interior;
+    double at = breaks.front();
+    for (std::size_t s = 0; s + 1 < length.size(); ++s) {
+        at += length[s] / total * (breaks.back() - breaks.front());
+        interior.push_back(at);
+    }
+    const KnotVector moved =
+        knots_around(task.degree, interior, breaks.front(), breaks.back(), task.closure);
+    if (!undetermined(moved, trial.parameters)) trial.knots = moved;
+}
+
+} // namespace
+
+bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift) {
+    CurveTrial best;
+    best.worst = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < rounds; ++round) {
+        if (task.cancelled && task.cancelled()) throw Cancelled("the fit was cancelled");
+        try {
+            trial.control = solve(task, trial);
+        } catch (const SolverError&) { // samples crowd at one side of a span
+            trial.worst = std::numeric_limits<double>::infinity();
+            break;                                     // the round before stands
+        } catch (const ConstraintConflict& conflict) { // too few knots where something must hold
+            trial.conflict = conflict.what();
+            trial.worst = std::numeric_limits<double>::infinity();
+            mark_held(task, trial);
+            break;
+        }
+        const CurvePieces pieces(trial.knots, trial.control);
+        correct_parameters(task, pieces, trial);
+        measure(task, pieces, trial);
+        if (trial.worst < best.worst) best = trial;
+        if (trial.worst <= 1 || !std::isfinite(trial.worst)) break;
+        if (round >= 3 && best.worst > 4) break; // too far to get there by weights
+        if (round >= 7 && best.worst > 1.5) break;
+        if (round >= 2) reweigh(trial);
+        if (shift == KnotShift::allowed && round % 2 == 1) shift_knots(task, trial);
+    }
+    if (std::isfinite(best.worst))
+        trial = std::move(best);
+    else
+        trial.worst = best.worst;
+    return trial.worst <= 1;
+}
+
+Spline spline_of(const CurveTrial& trial) {
+    return Spline::from_free({trial.knots}, trial.control);
+}
+
+} // namespace batten

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <batten/problem/options.hpp>
+#include <batten/spline/spline.hpp>
+#include <batten/system/constraints.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace batten {
+
+/// What a curve must reach: samples in order, a tolerance for each, and what must hold exactly.
+struct CurveTask {
+    const Samples& samples;
+    std::vector<double> tolerance; ///< one per sample, positive
+    int degree = 3;
+    Closure closure = Closure::open;
+    HoldOptions hold{};
+    /// Inflections that the control polygon may have; negative: any number.
+    Index most_inflections = -1;
+    /// Factor of the roughness (NormalSystem::add_roughness, order 2) that keeps in rein what no
+    /// sample holds; 0: none.
+    double roughness = 0;
+    /// Parameters that follow from the data alone; the corrected ones may have been led astray by a
+    /// coarse curve.
+    std::vector<double> parameters{};
+    /// Samples that are corners: a knot of full multiplicity each, at the sample's parameter, which
+    /// stays.
+    std::vector<Index> corners{};
+    /// Order up to which derivatives agree at a closed curve's seam; degree - 1 is no condition.
+    int seam_continuity = max_degree;
+    /// Samples whose parameters stay, ascending: corners, the seam, those with a tangent.
+    std::vector<Index> fixed{};
+    /// Greatest part of what is allowed between samples (measure/between_samples.hpp) that a
+    /// thinner curve may use.
+    double between = 1;
+    /// Asked every round; true ends the search with Cancelled.
+    std::function<bool()> cancelled{};
+};
+
+/// A curve on the way: knots, parameters and weights of the samples, and how far it is from its
+/// goal.
+struct CurveTrial {
+    KnotVector knots;
+    std::vector<double> parameters;
+    std::vector<double> weights;
+    PointSet control;          ///< free control points
+    std::vector<double> ratio; ///< distance over tolerance, per sample
+    std::string conflict;      ///< why what must hold could not on the last knots tried
+    double worst = 0;          ///< the largest of these; above 1, too, when the shape is not kept
+};
+
+/// Whether `settle` may shift knots towards where the error is.
+enum class KnotShift { none, allowed };
+
+/// Least-squares fit on the trial's knots, with parameters corrected by one closest-point step a
+/// round (in order, never past a neighbour's half-way) and weights moved towards the samples that
+/// are furthest out (Lawson's iteration), for at most `rounds` rounds or until every sample is
+/// within tolerance. Leaves the best round's state. Returns whether the tolerance is met. Throws
+/// SolverError when the samples do not determine the control points.
+bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift);
+
+/// The trial as a spline.
+Spline spline_of(const CurveTrial& trial);
+
+} // namespace batten

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <batten/problem/options.hpp>
+#include <batten/spline/spline.hpp>
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace batten {
+
+/// A surface or volume fitted to a grid within a tolerance.
+struct GridWithin {
+    Spline spline;
+    bool met = false;
+    double worst = 0; ///< largest distance of a sample over its tolerance, at its own parameters
+    std::vector<std::pair<std::string, Index>> stages;
+};
+
+/// What a surface or volume must reach.
+struct GridTask {
+    const Samples& samples;
+    const Parameters& parameters;
+    const std::vector<double>& tolerance; ///< one per sample, positive
+    std::vector<int> degree;
+    std::vector<Closure> closures;
+    std::vector<Index> most; ///< control points per axis
+    const HoldOptions& hold;
+    const std::function<bool()>& cancelled;
+};
+
+/// Searches the numbers of control points per axis: grows the axis that helps more until every
+/// sample is within tolerance, then shrinks each as far as that holds; knots evenly, or denser
+/// where the data bend more along the axis, whichever takes fewer.
+GridWithin few_knots(const GridTask& task);
+
+} // namespace batten

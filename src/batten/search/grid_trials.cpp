@@ -1,0 +1,123 @@
+#include <batten/search/grid_trials.hpp>
+
+#include <batten/iterate/conjugate_gradients.hpp>
+#include <batten/iterate/iterate.hpp>
+#include <batten/measure/deviation.hpp>
+#include <batten/problem/held.hpp>
+#include <batten/solve/direct.hpp>
+#include <batten/system/collocation.hpp>
+
+#include <algorithm>
+
+namespace batten {
+
+namespace {
+
+constexpr double reachable = 2.5; // times the tolerance: beyond it pushing does not help
+
+} // namespace
+
+Index product(const std::vector<Index>& n) {
+    Index result = 1;
+    for (Index k : n) result *= k;
+    return result;
+}
+
+GridSearch::GridSearch(const GridTask& task, std::vector<Spread> spreads)
+    : task_(task), spreads_(std::move(spreads)), ascending_(ascending(task.parameters)) {}
+
+double GridSearch::operator()(const std::vector<Index>& n) {
+    auto& known = known_[effort == Effort::equalised ? 1 : 0];
+    const auto found = known.find(n);
+    return found != known.end() ? found->second : known[n] = attempt(n);
+}
+
+double GridSearch::attempt(const std::vector<Index>& n) {
+    if (task_.cancelled && task_.cancelled()) throw Cancelled("the fit was cancelled");
+    std::vector<KnotVector> axes;
+    for (std::size_t k = 0; k < n.size(); ++k) {
+        axes.push_back(knots_for_boundaries(
+            knots_by(spreads_[k], ascending_[k], task_.degree[k], n[k], task_.closures[k]),
+            static_cast<int>(k), task_.hold.boundaries));
+        if (axes.back().free_count() > n[k]) // the boundaries alone have more
+            return std::numeric_limits<double>::infinity();
+        if (!task_.parameters.is_scattered() && undetermined(axes.back(), ascending_[k]))
+            return std::numeric_limits<double>::infinity();
+    }
+    try {
+        Trial trial = fitted(axes, task_.samples);
+        if (effort == Effort::equalised && trial.worst > 1 && trial.worst < reachable)
+            equalise(axes, trial);
+        keep(product(n), trial);
+        return trial.worst;
+    } catch (const SolverError&) {
+        return std::numeric_limits<double>::infinity();
+    } catch (const ConstraintConflict& error) { // with more control points it may hold
+        conflict = error.what();
+        return std::numeric_limits<double>::infinity();
+    }
+}
+
+GridSearch::Trial GridSearch::fitted(const std::vector<KnotVector>& axes,
+                                     const Samples& goals) const {
+    const auto system = assemble(axes, goals, task_.parameters);
+    Trial trial{Spline::from_free(axes, uncentred(solve(*system), system->centre())), {}, 0};
+    trial.ratio = parametric_deviations(trial.spline, task_.samples, task_.parameters);
+    for (std::size_t i = 0; i < trial.ratio.size(); ++i) {
+        trial.ratio[i] /= task_.tolerance[i];
+        trial.worst = std::max(trial.worst, trial.ratio[i]);
+    }
+    return trial;
+}
+
+void GridSearch::equalise(const std::vector<KnotVector>& axes, Trial& best_trial) const {
+    constexpr int rounds = 16;
+    constexpr double calm = 0.7; // part of the tolerance below which a sample is left alone
+    constexpr double push = 1;
+    Samples goals = task_.samples;
+    PointSet moved(task_.samples.points);
+    Trial trial = best_trial;
+    std::vector<double> course{trial.worst};
+    for (int round = 0; round < rounds && best_trial.worst > 1; ++round) {
+        const PointSet now = evaluate_grid(trial.spline, task_.parameters.axes);
+        for (Index i = 0; i < moved.size(); ++i) {
+            const double part = trial.ratio[static_cast<std::size_t>(i)];
+            if (part <= calm) continue;
+            const double factor = push * std::min(1.0, (part - calm) / (1 - calm));
+            for (Index d = 0; d < moved.dim(); ++d)
+                moved(i, d) += factor * (task_.samples.points(i, d) - now(i, d));
+        }
+        goals.points = Points(moved);
+        trial = fitted(axes, goals);
+        if (trial.worst < best_trial.worst) best_trial = trial;
+        course.push_back(best_trial.worst);
+        // three rounds must take a quarter off the excess
+        const std::size_t before = course.size() > 4 ? course.size() - 4 : 0;
+        if (round >= 3 && course.back() - 1 > 0.75 * (course[before] - 1)) break;
+    }
+}
+
+void GridSearch::keep(Index count, Trial& trial) {
+    const bool within = trial.worst <= 1;
+    if (met ? !within || count >= fewest : !within && trial.worst >= best_worst) return;
+    met = within;
+    fewest = count;
+    best_worst = trial.worst;
+    best = std::move(trial.spline);
+}
+
+/// Directly on a grid; on a cloud by preconditioned conjugate gradients, which hold still what no
+/// sample reaches.
+PointSet GridSearch::solve(const NormalSystem& system) const {
+    if (task_.hold.equalities())
+        return solve_direct(
+            system, held_constraints(system.axes(), task_.samples, task_.parameters, task_.hold)
+                        .centred(system.centre()));
+    if (!task_.parameters.is_scattered()) return solve_direct(system);
+    PointSet control(system.size(), system.dim());
+    ConjugateGradients cg(system, Preconditioner::axes);
+    iterate(cg, control, {.max_iterations = 300, .relative_gradient = 1e-9});
+    return control;
+}
+
+} // namespace batten

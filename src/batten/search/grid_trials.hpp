@@ -1,0 +1,55 @@
+#pragma once
+
+#include <batten/search/grid_sizes.hpp>
+#include <batten/search/spread_knots.hpp>
+#include <batten/system/normal_system.hpp>
+
+#include <limits>
+#include <map>
+
+namespace batten {
+
+/// Control points in all.
+Index product(const std::vector<Index>& n);
+
+/// Fits with given numbers of control points and remembers the best that met the tolerance.
+class GridSearch {
+  public:
+    GridSearch(const GridTask& task, std::vector<Spread> spreads);
+
+    /// Whether a fit that misses the tolerance by little is pushed towards its worst samples.
+    enum class Effort { least_squares, equalised };
+    Effort effort = Effort::least_squares;
+
+    /// Largest distance over tolerance with n control points per axis; remembered.
+    double operator()(const std::vector<Index>& n);
+
+    Spline best; ///< of the fewest control points that met the tolerance, or nearest to it
+    Index fewest = std::numeric_limits<Index>::max();
+    double best_worst = std::numeric_limits<double>::infinity();
+    bool met = false;
+    std::string conflict; ///< why what must hold could not, with too few control points
+
+  private:
+    struct Trial {
+        Spline spline;
+        std::vector<double> ratio; ///< distance over tolerance, per sample
+        double worst;
+    };
+
+    double attempt(const std::vector<Index>& n);
+    /// Least squares to `goals`, which stand for the samples; judged by the samples.
+    Trial fitted(const std::vector<KnotVector>& axes, const Samples& goals) const;
+    /// Moves the goals of the samples that are furthest out beyond them, again and again, as a
+    /// greater weight would: the system keeps its factors.
+    void equalise(const std::vector<KnotVector>& axes, Trial& best_trial) const;
+    void keep(Index count, Trial& trial);
+    PointSet solve(const NormalSystem& system) const;
+
+    const GridTask& task_;
+    std::vector<Spread> spreads_;
+    std::map<std::vector<Index>, double> known_[2];
+    std::vector<std::vector<double>> ascending_;
+};
+
+} // namespace batten
