@@ -1,6 +1,6 @@
 #pragma once
 
-#include <batten/fit/fit.hpp>
+#include <batten/problem/result.hpp>
 #include <batten/io/spline_file.hpp>
 
 #include <string>
