@@ -7,14 +7,16 @@ namespace batten {
 /// Where knots go for a stated number of control points.
 enum class KnotPlacement {
     data, ///< between the parameters, every span holding some [PieglTiller1997, eq. 9.68 and 9.69]
-    uniform, ///< evenly over the domain
+    both_ends, ///< the same, counted from the middle: reversed parameters give reversed knots
+    uniform,   ///< evenly over the domain
 };
 
 /// Knots of degree p for n free control points over [parameters.front(), parameters.back()]
-/// (closed: one period from 0 to 1), placed between the ascending `parameters`. Throws InvalidInput
-/// when n < p + 1, or n exceeds the number of parameters.
+/// (closed: one period from 0 to 1), placed between the ascending `parameters` by `rule`, data or
+/// both_ends. Throws InvalidInput when n < p + 1, or n exceeds the number of parameters.
 KnotVector knots_from_parameters(std::span<const double> parameters, int degree, Index n,
-                                 Closure closure = Closure::open);
+                                 Closure closure = Closure::open,
+                                 KnotPlacement rule = KnotPlacement::data);
 
 /// Clamped knots for as many control points as parameters, interior knots the means of degree
 /// consecutive parameters [PieglTiller1997, eq. 9.8; LinZhang2011, eq. 38]: for interpolation and

@@ -19,6 +19,8 @@ struct PointFormat {
     std::string_view extension;
     NumberArray (*parse)(const std::filesystem::path&, std::string_view);
     std::string (*format)(const Points&, const std::vector<Index>& grid);
+    /// How its points follow each other where no grid is stated.
+    Order order = Order::along_curve;
 };
 
 std::string comma_text(const Points& points, const std::vector<Index>&) {
@@ -31,9 +33,9 @@ std::string blank_text(const Points& points, const std::vector<Index>&) {
 constexpr PointFormat point_formats[] = {
     {".csv", parse_text, comma_text}, {".txt", parse_text, blank_text},
     {".xyz", parse_text, blank_text}, {".dat", parse_text, blank_text},
-    {".npy", parse_npy, format_npy},  {".ply", parse_ply, {}},
-    {".obj", parse_obj, {}},          {".stl", parse_stl, {}},
-    {".las", parse_las, {}},
+    {".npy", parse_npy, format_npy},  {".ply", parse_ply, {}, Order::none},
+    {".obj", parse_obj, {}, Order::none},          {".stl", parse_stl, {}, Order::none},
+    {".las", parse_las, {}, Order::ground},
 };
 
 std::vector<SplineFormat>& registry() {
@@ -122,6 +124,7 @@ Samples read_points(const std::filesystem::path& path, const ReadOptions& option
     NumberArray array = read_numbers(path);
     Samples samples = options.heights ? heights_from(std::move(array), options.spacing, path)
                                       : points_from(std::move(array), options.grid, path);
+    if (samples.grid.empty()) samples.order = point_format(path).order;
     check(samples);
     return samples;
 }

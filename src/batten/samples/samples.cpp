@@ -66,6 +66,11 @@ void check_weights(const Samples& samples) {
 
 } // namespace
 
+std::string_view to_string(SampleKind kind) {
+    constexpr std::string_view names[] = {"sequence", "grid", "cloud"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
 void check(const Samples& samples) {
     check_shape(samples);
     check_finite(samples.points);
@@ -89,7 +94,11 @@ Samples height_samples(const Points& heights, std::array<Index, 2> shape,
             points(k, 1) = static_cast<double>(j) * spacing[1];
             points(k, 2) = heights(k, 0);
         }
-    return {.points = std::move(points), .grid = {shape[0], shape[1]}};
+    return {.points = std::move(points),
+            .grid = {shape[0], shape[1]},
+            .weights = {},
+            .order = Order::along_curve,
+            .spacing = Spacing::even};
 }
 
 std::vector<Index> end_samples(const Samples& samples) {
