@@ -31,10 +31,10 @@ std::string blank_text(const Points& points, const std::vector<Index>&) {
 }
 
 constexpr PointFormat point_formats[] = {
-    {".csv", parse_text, comma_text}, {".txt", parse_text, blank_text},
-    {".xyz", parse_text, blank_text}, {".dat", parse_text, blank_text},
-    {".npy", parse_npy, format_npy},  {".ply", parse_ply, {}, Order::none},
-    {".obj", parse_obj, {}, Order::none},          {".stl", parse_stl, {}, Order::none},
+    {".csv", parse_text, comma_text},       {".txt", parse_text, blank_text},
+    {".xyz", parse_text, blank_text},       {".dat", parse_text, blank_text},
+    {".npy", parse_npy, format_npy},        {".ply", parse_ply, {}, Order::none},
+    {".obj", parse_obj, {}, Order::none},   {".stl", parse_stl, {}, Order::none},
     {".las", parse_las, {}, Order::ground},
 };
 

@@ -20,6 +20,7 @@ constexpr MethodSetting eigenvalue_setting{
 const std::vector<MethodEntry>& table() {
     static const std::vector<MethodEntry> all = {
         {"auto", "the fastest that answers the question", "", {}},
+        {"search", "the fewest control points within a tolerance", "", {}},
         {"direct", "banded Cholesky of the normal equations, axis by axis", "", {}},
         {"lspia",
          "least-squares PIA",

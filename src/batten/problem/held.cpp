@@ -58,8 +58,8 @@ void check_tangent(const HeldTangent& tangent, const Samples& samples, SampleKin
     }
 }
 
-void check_boundary(const HeldBoundary& boundary, const Samples& samples,
-                    SampleKind kind, const AxisPlan& plan) {
+void check_boundary(const HeldBoundary& boundary, const Samples& samples, SampleKind kind,
+                    const AxisPlan& plan) {
     const std::vector<int>& degree = plan.degree;
     const auto axes = static_cast<Index>(plan.count());
     if (kind != SampleKind::grid)
@@ -143,7 +143,7 @@ void check_held(const HoldOptions& hold, const Samples& samples, SampleKind kind
     }
     for (const HeldTangent& tangent : hold.tangents)
         check_tangent(tangent, samples, kind, static_cast<Index>(plan.count()));
-    for (const HeldBoundary& boundary : hold.boundaries) 
+    for (const HeldBoundary& boundary : hold.boundaries)
         check_boundary(boundary, samples, kind, plan);
 }
 

@@ -28,8 +28,8 @@ struct ShapeOptions {
     std::optional<Parameters> parameters{};
     /// Makes the samples a cloud whose parameters are its points' coordinates in this plane.
     std::optional<Projection> projection{};
-    /// Where knots go; where it is left open evenly between the parameters, from both ends alike, or
-    /// by the papers' rule (KnotPlacement::data) when a method is named.
+    /// Where knots go; where it is left open evenly between the parameters, from both ends alike,
+    /// or by the papers' rule (KnotPlacement::data) when a method is named.
     std::optional<KnotPlacement> placement{};
     /// Given knots per axis, in place of `placement` and `control_points`.
     std::vector<std::vector<double>> knots{};

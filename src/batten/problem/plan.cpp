@@ -80,10 +80,10 @@ KnotVector axis_knots(const Problem& problem, std::size_t axis) {
         closed && shape.seam_continuity >= 0 ? degree - 1 - shape.seam_continuity : 0;
     const Index n = plan.control_points[axis] - copies;
     if (n < degree + 1)
-        throw InvalidInput(fmt::format("degree {} with continuity C{} at the seam needs at least {} "
-                                       "control points, got {}",
-                                       degree, shape.seam_continuity, degree + 1 + copies,
-                                       n + copies));
+        throw InvalidInput(
+            fmt::format("degree {} with continuity C{} at the seam needs at least {} "
+                        "control points, got {}",
+                        degree, shape.seam_continuity, degree + 1 + copies, n + copies));
     const KnotPlacement rule = placement_of(problem.options);
     const KnotVector knots =
         rule == KnotPlacement::uniform || problem.kind == SampleKind::cloud
@@ -107,7 +107,8 @@ AxisPlan plan_axes(const ShapeOptions& options, Index axes) {
             fmt::format("knots: {} vectors given for {} axes", options.knots.size(), axes));
     if (options.control_points.empty()) return plan;
     if (!options.knots.empty())
-        throw InvalidInput("control points and knots: the knots state the number of control points");
+        throw InvalidInput(
+            "control points and knots: the knots state the number of control points");
     plan.control_points = per_axis(options.control_points, axes, "control points");
     for (std::size_t k = 0; k < plan.count(); ++k)
         if (plan.control_points[k] < plan.degree[k] + 1)
@@ -121,9 +122,9 @@ std::vector<KnotVector> fixed_knots(const Problem& problem) {
     if (!problem.sized()) throw InvalidInput("the number of control points is not stated");
     std::vector<KnotVector> result;
     for (std::size_t k = 0; k < problem.axes.count(); ++k)
-        result.push_back(knots_for_boundaries(
-            on_axis(k, [&] { return axis_knots(problem, k); }), static_cast<int>(k),
-            problem.options.hold.boundaries));
+        result.push_back(knots_for_boundaries(on_axis(k, [&] { return axis_knots(problem, k); }),
+                                              static_cast<int>(k),
+                                              problem.options.hold.boundaries));
     return result;
 }
 

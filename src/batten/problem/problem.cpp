@@ -70,7 +70,7 @@ Parameters seen(const Samples& samples, const ShapeOptions& shape) {
     if (shape.parametrization)
         throw InvalidInput("parametrize: a cloud's parameters are its points' coordinates in a "
                            "plane, not lengths along it");
-    return projected(samples, shape.projection ? *shape.projection
+    return projected(samples, shape.projection                 ? *shape.projection
                               : samples.order == Order::ground ? Projection::xy
                                                                : Projection::plane);
 }
@@ -97,7 +97,7 @@ Parameters chosen_parameters(const Problem& problem) {
     const bool noisy = problem.options.smooth.wanted && !shape.parametrization &&
                        problem.kind == SampleKind::sequence && samples.size() > 20;
     if (noisy) return {{noise_aware_parameters(samples.points, problem.axes.closures[0])}, {}};
-    const Parametrization rule = shape.parametrization             ? *shape.parametrization
+    const Parametrization rule = shape.parametrization              ? *shape.parametrization
                                  : samples.spacing == Spacing::even ? Parametrization::uniform
                                                                     : Parametrization::chord;
     return parameters_for_boundaries(samples, parametrize(samples, rule, problem.axes.closures),
@@ -162,7 +162,8 @@ std::vector<double> sample_tolerances(const Samples& samples, const ToleranceOpt
                         samples.size()));
     for (std::size_t i = 0; i < t.size(); ++i)
         if (!(t[i] > 0) || !std::isfinite(t[i]))
-            throw InvalidInput(fmt::format("tolerance {}: {} must be positive and finite", i, t[i]));
+            throw InvalidInput(
+                fmt::format("tolerance {}: {} must be positive and finite", i, t[i]));
     return t;
 }
 

@@ -25,7 +25,8 @@ struct Problem {
     FitOptions options{};
     AxisPlan axes{};
     Parameters parameters{};
-    /// One per sample where a tolerance is stated, else empty; infinite: the sample may be anywhere.
+    /// One per sample where a tolerance is stated, else empty; infinite: the sample may be
+    /// anywhere.
     std::vector<double> tolerance{};
     /// Diagonal of the samples' box.
     double size = 0;

@@ -3,7 +3,6 @@
 #include <batten/basis/place_knots.hpp>
 #include <batten/iterate/conjugate_gradients.hpp>
 #include <batten/iterate/iterate.hpp>
-#include <batten/problem/plan.hpp>
 #include <batten/samples/noise.hpp>
 #include <batten/solve/direct.hpp>
 
@@ -91,30 +90,24 @@ std::vector<double> median_chords(const Samples& samples, std::size_t axis, Clos
 
 } // namespace
 
-Parameters robust_parameters(const Samples& samples, const FitOptions& options) {
-    if (options.shape.parameters) return *options.shape.parameters;
-    if (options.shape.parametrization != Parametrization::uniform) {
-        const auto closure = [&](std::size_t k) {
-            const auto& closures = options.shape.closures;
-            return closures[std::min(k, closures.size() - 1)];
-        };
-        if (samples.grid.empty()) return {{bounded_chords(samples.points, closure(0))}, {}};
-        Parameters result;
-        for (std::size_t k = 0; k < samples.grid.size(); ++k)
-            result.axes.push_back(median_chords(samples, k, closure(k)));
-        return result;
-    }
-    ShapeOptions shape = options.shape;
-    shape.knots.clear();
-    shape.control_points = samples.shape();
-    return choose_parameters(samples, shape, plan_axes(samples, shape));
+Parameters robust_parameters(const Problem& problem) {
+    const Samples& samples = problem.samples;
+    const ShapeOptions& shape = problem.options.shape;
+    const bool even =
+        shape.parametrization == Parametrization::uniform || samples.spacing == Spacing::even;
+    if (shape.parameters || even) return problem.parameters;
+    const std::vector<Closure>& closures = problem.axes.closures;
+    if (samples.grid.empty()) return {{bounded_chords(samples.points, closures[0])}, {}};
+    Parameters result;
+    for (std::size_t k = 0; k < samples.grid.size(); ++k)
+        result.axes.push_back(median_chords(samples, k, closures[k]));
+    return result;
 }
 
-std::vector<KnotVector> robust_knots(const Samples& samples, const Parameters& parameters,
-                                     const FitOptions& options) {
-    const std::vector<int> degree = degrees_per_axis(options.shape, parameters.axis_count());
-    std::vector<Closure> closures = options.shape.closures;
-    if (closures.size() == 1) closures.resize(degree.size(), closures[0]);
+std::vector<KnotVector> robust_knots(const Problem& problem, const Parameters& parameters) {
+    const Samples& samples = problem.samples;
+    const std::vector<int>& degree = problem.axes.degree;
+    const std::vector<Closure>& closures = problem.axes.closures;
     std::vector<KnotVector> axes;
     for (std::size_t k = 0; k < degree.size(); ++k) {
         const Index least = 2 * degree[k] + 1;

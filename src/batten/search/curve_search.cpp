@@ -1,12 +1,12 @@
 #include <batten/core/stopwatch.hpp>
 #include <batten/problem/held.hpp>
+#include <batten/problem/subset.hpp>
 #include <batten/samples/corners.hpp>
 #include <batten/samples/noise.hpp>
 #include <batten/search/curve_knots.hpp>
 #include <batten/search/curve_refining.hpp>
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/search.hpp>
-#include <batten/search/tolerance.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,25 +19,24 @@ namespace {
 
 /// A closed run without the repetition of its first sample at the end; what is said of that one
 /// holds for the first.
-struct OneTurn {
-    Samples samples;
-    HoldOptions hold;
-};
+Subset one_turn(const Problem& problem) {
+    const Points& points = problem.samples.points;
+    const Index m = points.size();
+    const bool repeated = problem.axes.closures[0] == Closure::closed && m > 2 &&
+                          std::ranges::equal(points[0], points[m - 1]);
+    return Subset::without(repeated ? std::vector<Index>{m - 1} : std::vector<Index>{}, m);
+}
 
-OneTurn without_seam(const Samples& samples, HoldOptions hold, Closure closure) {
-    OneTurn result{samples, std::move(hold)};
-    const Index m = samples.size();
-    if (closure == Closure::open || m <= 2 ||
-        !std::ranges::equal(samples.points[0], samples.points[m - 1]))
-        return result;
-    result.samples.points = samples.points.slice(0, m - 1);
-    if (!result.samples.weights.empty()) result.samples.weights.pop_back();
-    std::vector<Index>& exact = result.hold.interpolate;
-    if (std::ranges::count(exact, 0) > 0) std::erase(exact, m - 1);
-    std::ranges::replace(exact, m - 1, Index{0});
-    for (HeldTangent& tangent : result.hold.tangents)
-        if (tangent.sample == m - 1) tangent.sample = 0;
-    return result;
+Problem with_seam_at_first(Problem problem, const Subset& turn) {
+    if (turn.whole()) return problem;
+    const Index last = problem.samples.size() - 1;
+    std::vector<Index>& exact = problem.options.hold.interpolate;
+    if (std::ranges::count(exact, 0) > 0) std::erase(exact, last);
+    std::ranges::replace(exact, last, Index{0});
+    for (HeldTangent& tangent : problem.options.hold.tangents)
+        if (tangent.sample == last) tangent.sample = 0;
+    std::ranges::replace(problem.options.tolerance.corner_samples, last, Index{0});
+    return problem;
 }
 
 /// Without the corners that have too few samples between them and the one before, or an end: a
@@ -177,35 +176,24 @@ Index allowed_inflections(const CurveTask& task, double tolerance) {
     return shown;
 }
 
-/// What the samples and options ask for.
-CurveTask task_of(const OneTurn& turn, const FitOptions& options,
-                  const std::vector<double>& tolerance) {
-    const ShapeOptions& shape = options.shape;
-    const Samples& samples = turn.samples;
+/// What the problem asks for.
+CurveTask task_of(const Problem& problem) {
+    const Samples& samples = problem.samples;
+    const int seam = problem.options.shape.seam_continuity;
     CurveTask task{.samples = samples,
-                   .tolerance = tolerance,
-                   .degree = shape.degree[0],
-                   .closure = shape.closures[0],
-                   .hold = turn.hold};
-    if (task.degree < 1 || task.degree > max_degree)
-        throw InvalidInput(
-            fmt::format("axis 0: degree {} is outside 1 to {}", task.degree, max_degree));
+                   .tolerance = problem.tolerance,
+                   .degree = problem.axes.degree[0],
+                   .closure = problem.axes.closures[0],
+                   .hold = problem.options.hold,
+                   .parameters = problem.parameters.axes[0],
+                   .cancelled = problem.options.cancelled};
+    task.seam_continuity = seam < 0 ? task.degree - 1 : seam;
     const bool closed = task.closure == Closure::closed;
     const int least = closed ? 2 * task.degree + 2 : task.degree + 1;
     if (samples.size() < least)
         throw InvalidInput(fmt::format("axis 0: {}degree {} needs at least {} samples, got {}",
                                        closed ? "closed, " : "", task.degree, least,
                                        samples.size()));
-    check_held(task.hold, samples, {task.degree}, {task.closure});
-    if (shape.seam_continuity > task.degree - 1)
-        throw InvalidInput(fmt::format("closed: continuity C{} at the seam is more than degree {} "
-                                       "has anywhere, C{}",
-                                       shape.seam_continuity, task.degree, task.degree - 1));
-    task.seam_continuity = shape.seam_continuity < 0 ? task.degree - 1 : shape.seam_continuity;
-    if (shape.parameters) check(*shape.parameters, samples);
-    task.parameters = shape.parameters ? shape.parameters->axes[0]
-                                       : parametrize_sequence(samples.points, shape.parametrization,
-                                                              task.closure);
     const auto distinct =
         1 +
         std::ranges::count_if(task.parameters, [last = task.parameters.front()](double t) mutable {
@@ -215,7 +203,6 @@ CurveTask task_of(const OneTurn& turn, const FitOptions& options,
         throw InvalidInput(fmt::format("axis 0: {}degree {} needs at least {} samples at different "
                                        "places, got {}",
                                        closed ? "closed, " : "", task.degree, least, distinct));
-    task.cancelled = options.cancelled;
     return task;
 }
 
@@ -294,21 +281,17 @@ void take_out_inflections(const CurveTask& task, const ToleranceOptions& options
 
 } // namespace
 
-FitResult curve_within(const Samples& given, const FitOptions& options,
-                       std::vector<double> tolerance) {
-    FitResult result;
+Fitted curve_within(const Problem& given) {
+    Fitted result;
     FitReport& report = result.report;
     Stopwatch watch;
-    const ShapeOptions& shape = options.shape;
-    if (shape.degree.size() != 1 || shape.closures.size() != 1)
-        throw InvalidInput("degree, closed: one value is needed for a curve");
-    const OneTurn turn = without_seam(given, options.hold, shape.closures[0]);
-    const Samples& samples = turn.samples;
-    tolerance.resize(static_cast<std::size_t>(samples.size()));
-    CurveTask task = task_of(turn, options, tolerance);
-    const double smallest = *std::min_element(tolerance.begin(), tolerance.end());
+    const Subset turn = one_turn(given);
+    const Problem problem = turn.of(with_seam_at_first(given, turn));
+    const FitOptions& options = problem.options;
+    const Samples& samples = problem.samples;
+    CurveTask task = task_of(problem);
+    const double smallest = *std::min_element(task.tolerance.begin(), task.tolerance.end());
     task.most_inflections = allowed_inflections(task, smallest);
-    report.seconds.emplace_back("parametrize", watch.lap());
     const Index limit = options.tolerance.max_control_points;
     const Index most = std::max<Index>(
         task.degree + 1,
@@ -336,14 +319,12 @@ FitResult curve_within(const Samples& given, const FitOptions& options,
     report.seconds.emplace_back("search", watch.lap());
     result.spline = spline_of(found.trial);
     result.parameters.axes = {found.trial.parameters};
-    if (samples.size() < given.size())
+    if (!turn.whole())
         result.parameters.axes[0].push_back(found.trial.parameters[0] + found.trial.knots.length());
-    report.method = "tolerance";
-    report.method_reason = "knots where the error is, then as few as hold it";
     report.tolerance = smallest;
     report.termination = met ? Termination::tolerance_met : Termination::tolerance_not_met;
     judge(task, found, noise, not_met_words(task, noise, smallest, most, limit > 0), report);
-    report.deviation.kind = DeviationKind::distance;
+    result.judged_by = DeviationKind::distance;
     return result;
 }
 

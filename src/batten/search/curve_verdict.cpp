@@ -56,6 +56,8 @@ void count_inflections(const CurveTask& task, const CurveWithin& found, FitRepor
     report.data_inflections = shown_inflections(task, height);
     if (task.most_inflections >= 0)
         report.inflections = inflection_count(found.trial.control, task.closure);
+    report.allowed_inflections =
+        task.hold.preserve == Preserve::nothing ? -1 : task.most_inflections;
 }
 
 } // namespace
