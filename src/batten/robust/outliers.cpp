@@ -16,27 +16,23 @@ namespace {
 /// Median residual of the samples around each one: up to 4 places away along a sequence, 2 along
 /// a grid's axes.
 std::vector<double> around(const Samples& samples, const std::vector<double>& residual) {
-    const std::vector<Index> shape = samples.shape();
-    const Index reach = shape.size() == 1 ? 4 : 2;
+    const GridIndex grid(samples.shape());
+    const Index reach = grid.axis_count() == 1 ? 4 : 2;
     std::vector<double> result(residual.size());
     for_each_chunk(samples.size(), [&](Index i) {
-        std::vector<Index> near{0};
-        Index stride = samples.size();
-        Index rest = i;
-        for (Index m : shape) {
-            stride /= m;
-            const Index at = rest / stride;
-            rest %= stride;
-            std::vector<Index> next;
-            for (Index base : near)
-                for (Index j = std::max<Index>(0, at - reach); j <= std::min(m - 1, at + reach);
-                     ++j)
-                    next.push_back(base + j * stride);
-            near = std::move(next);
+        const GridIndex::Place here = grid.place(i);
+        GridIndex::Place low{};
+        std::vector<Index> window;
+        for (std::size_t k = 0; k < grid.axis_count(); ++k) {
+            low[k] = std::max<Index>(0, here[k] - reach);
+            window.push_back(std::min(grid.length(k), here[k] + reach + 1) - low[k]);
         }
+        const Index first = grid.at(low);
         std::vector<double> values;
-        for (Index j : near)
+        GridIndex(window).for_each([&](const GridIndex::Place& place, Index) {
+            const Index j = first + grid.at(place);
             if (j != i) values.push_back(residual[static_cast<std::size_t>(j)]);
+        });
         result[static_cast<std::size_t>(i)] = median(std::move(values));
     });
     return result;

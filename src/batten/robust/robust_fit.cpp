@@ -1,6 +1,7 @@
 #include <batten/robust/robust_fit.hpp>
 
 #include <batten/basis/place_knots.hpp>
+#include <batten/core/distinct.hpp>
 #include <batten/iterate/conjugate_gradients.hpp>
 #include <batten/iterate/iterate.hpp>
 #include <batten/samples/noise.hpp>
@@ -59,24 +60,21 @@ std::vector<double> bounded_chords(const Points& q, Closure closure) {
 
 /// Parameters of a grid's axis from the medians, over its rows, of each step's part of the row.
 std::vector<double> median_chords(const Samples& samples, std::size_t axis, Closure closure) {
-    const Index m = samples.grid[axis];
-    Index inner = 1;
-    for (std::size_t k = axis + 1; k < samples.grid.size(); ++k) inner *= samples.grid[k];
-    const Index rows = samples.size() / m;
+    const GridIndex grid(samples.grid);
+    const Index m = grid.length(axis);
     const Index count = closure == Closure::closed ? m : m - 1;
     std::vector<std::vector<double>> part(static_cast<std::size_t>(count));
-    for (Index r = 0; r < rows; ++r) {
-        const Index first = r / inner * m * inner + r % inner;
+    grid.for_each_strand(axis, [&](const GridIndex::Strand& strand) {
         std::vector<double> chord;
         double total = 0;
         for (Index j = 0; j < count; ++j) {
-            chord.push_back(distance(samples.points[first + j * inner],
-                                     samples.points[first + (j + 1) % m * inner]));
+            chord.push_back(
+                distance(samples.points[strand[j]], samples.points[strand[(j + 1) % m]]));
             total += chord.back();
         }
-        if (!(total > 0)) continue;
+        if (!(total > 0)) return;
         for (std::size_t j = 0; j < chord.size(); ++j) part[j].push_back(chord[j] / total);
-    }
+    });
     std::vector<double> t{0};
     for (auto& steps : part) t.push_back(t.back() + median(std::move(steps)));
     const double length = t.back();
@@ -122,8 +120,7 @@ std::vector<KnotVector> robust_knots(const Problem& problem, const Parameters& p
                                          closures[k]));
             continue;
         }
-        std::vector<double> t = parameters.axes[k]; // distinct: runs of one value count once
-        t.erase(std::unique(t.begin(), t.end()), t.end());
+        const std::vector<double> t = without_repeats(parameters.axes[k]);
         const auto m = static_cast<Index>(t.size());
         const Index n = std::min(m, std::max(least, degree.size() == 1 ? m / 3 : m / 2));
         axes.push_back(knots_from_parameters(t, degree[k], n, closures[k]));
