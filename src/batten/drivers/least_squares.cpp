@@ -20,11 +20,10 @@ namespace {
 /// of these.
 class FrameRecorder {
   public:
-    FrameRecorder(Index most, const std::vector<double>& centre) : most_(most), centre_(centre) {}
+    explicit FrameRecorder(Index most) : most_(most) {}
     void record(const Iteration& now, std::vector<Frame>& frames) {
         if (most_ == 0 || now.number % stride_ != 0) return;
-        frames.push_back(
-            {now.number, centre_.empty() ? now.control : uncentred(now.control, centre_)});
+        frames.push_back({now.number, now.control});
         if (static_cast<Index>(frames.size()) < 2 * most_) return;
         stride_ *= 2;
         std::erase_if(frames, [&](const Frame& frame) { return frame.iteration % stride_ != 0; });
@@ -32,13 +31,12 @@ class FrameRecorder {
 
   private:
     Index most_;
-    std::vector<double> centre_;
     Index stride_ = 1;
 };
 
 Observer recording(const FitOptions& options, const DeviationMeasure& deviation,
-                   const std::vector<double>& centre, FitReport& report) {
-    return [&, frames = FrameRecorder(options.most_frames, centre)](const Iteration& now) mutable {
+                   FitReport& report) {
+    return [&, frames = FrameRecorder(options.most_frames)](const Iteration& now) mutable {
         frames.record(now, report.frames);
         if (options.keep_history)
             report.history.push_back({now.number, now.gradient_norm, now.largest_move,
@@ -81,14 +79,17 @@ Rest without(const Samples& samples, const Parameters& parameters,
     return rest;
 }
 
-DeviationMeasure measuring(const NormalSystem& system, const Samples& samples,
+DeviationMeasure measuring(const std::vector<KnotVector>& axes, const Samples& samples,
                            const Parameters& parameters) {
     return [&](const PointSet& control) {
-        const Spline now = Spline::from_free(system.axes(), uncentred(control, system.centre()));
+        const Spline now = Spline::from_free(axes, control);
         return summarise(parametric_deviations(now, samples, parameters), DeviationKind::parametric)
             .maximum;
     };
 }
+
+/// Part of the data's size that counts as hitting a sample.
+constexpr double exact_part = 1e-9;
 
 bool convex(const PointSet& control, Closure closure) {
     const std::vector<int> signs = turn_signs(control, closure);
@@ -123,7 +124,7 @@ void run(Method& method, PointSet& control, const FitOptions& options,
     const StepLimit limit = shape_limit(options.hold.preserve, axes, control, report.method);
     const Summary summary =
         iterate(method, control, options.stop,
-                {recording(options, deviation, centre, report), limit, deviation});
+                {recording(options, deviation, report), limit, deviation, centre});
     report.termination = summary.termination;
     report.iterations = summary.iterations;
     report.gradient_norm = summary.gradient_norm;
@@ -204,17 +205,19 @@ PointSet least_squares(const std::vector<KnotVector>& axes, const Samples& sampl
         centred(initial_control(samples, parameters, axes, options.method), system->centre());
     std::unique_ptr<Method> method;
     if (clspia) {
+        const MethodEntry& entry = method_entry("clspia");
         const Settings& s = options.method.settings;
-        check_settings(method_entry("clspia"), s);
+        check_settings(entry, s);
         const Constraints exact = with_best_lengths(*system, local.independent(system->size()));
-        const ClspiaSettings settings{setting(s, "mu", 0), setting(s, "mu_1", 0),
-                                      setting(s, "inner_tolerance", 0),
-                                      setting(s, "eigenvalue_tolerance", 1e-2)};
-        method = std::make_unique<Clspia>(*system, exact, settings);
+        const ClspiaSettings settings{setting(s, "mu"), setting(s, "mu_1"),
+                                      setting(s, "inner_tolerance"),
+                                      setting(entry, s, "eigenvalue_tolerance")};
+        method = std::make_unique<Clspia>(*system, exact, exact_part * diagonal(samples.points),
+                                          settings);
     } else {
         method = make_method(report.method, *system, options.method.settings);
     }
-    run(*method, control, options, axes, measuring(*system, samples, parameters), report,
+    run(*method, control, options, axes, measuring(axes, samples, parameters), report,
         system->centre());
     report.seconds.emplace_back("solve", watch.lap());
     return uncentred(control, system->centre());

@@ -10,7 +10,8 @@ namespace batten {
 /// Runs a method in the one loop from the free control points `control` (relative to nothing or to
 /// the system's centre, as the method takes them), with the options' observer, history and shape
 /// limit, and enters how it went in the report. `deviation` measures the largest deviation of a
-/// sample; `centre` is what `control` is relative to, nothing when empty.
+/// sample from absolute control points; `centre` is what `control` is relative to, nothing when
+/// empty.
 void run(Method& method, PointSet& control, const FitOptions& options,
          const std::vector<KnotVector>& axes, const DeviationMeasure& deviation, FitReport& report,
          const std::vector<double>& centre = {});

@@ -7,7 +7,10 @@
 #include <batten/problem/plan.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
+#include <numeric>
 
 namespace batten {
 
@@ -65,6 +68,48 @@ Setting setting_of_2004(const Samples& samples) {
     return setting;
 }
 
+/// As many control points as samples want knots of their own, where eq. 9.69 would leave the
+/// collocation matrix near-singular.
+KnotVector interpolating(const KnotVector& chosen, const std::vector<double>& parameters) {
+    return chosen.closed() ? knots_at_parameters(parameters, chosen.degree())
+                           : averaged_knots(parameters, chosen.degree());
+}
+
+/// The sample that each control point of a closed axis follows: in the same order round, from the
+/// one that leaves samples nearest to the middles of the B-splines.
+std::vector<Index> samples_round(const KnotVector& axis, const std::vector<double>& parameters) {
+    const auto n = static_cast<Index>(parameters.size());
+    const int p = axis.degree();
+    const auto apart = [&](Index i, Index j) { // B-spline i and sample j
+        double middle = 0;
+        for (int k = 1; k <= p; ++k) middle += axis[i + k] / p;
+        const double turns = (middle - parameters[static_cast<std::size_t>(j)]) / axis.length();
+        return std::abs(turns - std::round(turns));
+    };
+    Index nearest = 0;
+    for (Index j = 1; j < n; ++j)
+        if (apart(0, j) < apart(0, nearest)) nearest = j;
+    Index best = nearest;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (Index first = nearest - p; first <= nearest + p; ++first) {
+        double sum = 0;
+        for (Index i = 0; i < n; ++i) sum += apart(i, (i + first + n) % n);
+        if (sum < smallest) {
+            smallest = sum;
+            best = first;
+        }
+    }
+    std::vector<Index> own;
+    for (Index i = 0; i < n; ++i) own.push_back((i + best + n) % n);
+    return own;
+}
+
+std::vector<Index> in_order(Index count) {
+    std::vector<Index> own(static_cast<std::size_t>(count));
+    std::iota(own.begin(), own.end(), Index{0});
+    return own;
+}
+
 Setting square_setting(const Samples& samples, const FitOptions& options) {
     Setting setting;
     const AxisPlan plan = plan_axes(samples, options.shape);
@@ -73,26 +118,21 @@ Setting square_setting(const Samples& samples, const FitOptions& options) {
         throw InvalidInput(
             "pia: samples in order or a grid are needed, not a cloud; use epia or lspia");
     setting.axes = choose_knots(setting.parameters, options.shape, plan);
-    // as many control points as samples: knots by averaging, where eq. 9.69 would leave the
-    // collocation matrix near-singular
-    for (std::size_t axis = 0; axis < setting.axes.size(); ++axis)
-        if (options.shape.knots.empty() && options.shape.placement == KnotPlacement::data &&
-            !setting.axes[axis].closed() &&
-            setting.axes[axis].free_count() ==
-                static_cast<Index>(setting.parameters.axes[axis].size()))
-            setting.axes[axis] = averaged_knots(setting.parameters.axes[axis], plan.degree[axis]);
+    const bool free_knots =
+        options.shape.knots.empty() && options.shape.placement == KnotPlacement::data;
     for (std::size_t axis = 0; axis < setting.axes.size(); ++axis) {
-        const Index n = setting.axes[axis].free_count();
-        const auto m = static_cast<Index>(setting.parameters.axes[axis].size());
-        if (n != m)
-            throw InvalidInput(fmt::format(
-                "axis {}: pia needs as many control points as samples, got {} and {}", axis, n, m));
-        if (const auto gap = undetermined(setting.axes[axis], setting.parameters.axes[axis]))
+        KnotVector& knots = setting.axes[axis];
+        const std::vector<double>& t = setting.parameters.axes[axis];
+        const auto m = static_cast<Index>(t.size());
+        if (knots.free_count() != m)
+            throw InvalidInput(
+                fmt::format("axis {}: pia needs as many control points as samples, got {} and {}",
+                            axis, knots.free_count(), m));
+        if (free_knots) knots = interpolating(knots, t);
+        if (const auto gap = undetermined(knots, t))
             throw InvalidInput(
                 fmt::format("axis {}: the collocation matrix is singular: {}", axis, *gap));
-        std::vector<Index> own;
-        for (Index i = 0; i < n; ++i) own.push_back(i);
-        setting.own.push_back(std::move(own));
+        setting.own.push_back(knots.closed() ? samples_round(knots, t) : in_order(m));
     }
     return setting;
 }
@@ -133,7 +173,9 @@ FitResult fit_pia(const Samples& samples, const FitOptions& options) {
         options.method.initial == Initial::data
             ? own_samples(data.groups(), samples)
             : initial_control(samples, result.parameters, setting.axes, options.method);
-    Pia pia(data, batten::setting(options.method.settings, "weight", 1), options.method.moving);
+    const MethodEntry& entry = method_entry("pia");
+    check_settings(entry, options.method.settings);
+    Pia pia(data, batten::setting(entry, options.method.settings, "weight"), options.method.moving);
     run(
         pia, control, options, setting.axes,
         [&](const PointSet& at) { return largest_length(data.residual(at)); }, result.report);
