@@ -47,7 +47,9 @@ void add_methods(CLI::App& app) {
             fmt::print("{:<18}{}{}\n", entry.name, entry.description,
                        entry.source.empty() ? "" : fmt::format(" [{}]", entry.source));
             for (const MethodSetting& s : entry.settings)
-                fmt::print("            --set {}=...  {}\n", s.name, s.meaning);
+                fmt::print("                  --set {}=...  {}, {} (default {}){}\n", s.name,
+                           s.meaning, s.range.words(s.name), s.default_words(),
+                           s.source.empty() ? "" : fmt::format(" [{}]", s.source));
         }
     });
 }

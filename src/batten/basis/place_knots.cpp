@@ -57,6 +57,21 @@ KnotVector averaged_knots(std::span<const double> parameters, int degree) {
     return knots_around(degree, interior, parameters.front(), parameters.back());
 }
 
+KnotVector knots_at_parameters(std::span<const double> parameters, int degree) {
+    check_count(degree, static_cast<Index>(parameters.size()));
+    std::vector<double> cycle(parameters.begin(), parameters.end());
+    if (degree % 2 == 0) {
+        double before = parameters.back() - 1;
+        for (double& t : cycle) {
+            const double middle = (before + t) / 2;
+            before = t;
+            t = middle;
+        }
+    }
+    return knots_around(degree, std::span(cycle).subspan(1), cycle.front(), cycle.front() + 1,
+                        Closure::closed);
+}
+
 KnotVector uniform_knots(int degree, Index n, double begin, double end, Closure closure) {
     check_count(degree, n);
     const Index count = interior_count(degree, n, closure);

@@ -23,6 +23,12 @@ KnotVector knots_from_parameters(std::span<const double> parameters, int degree,
 /// for EPIA.
 KnotVector averaged_knots(std::span<const double> parameters, int degree);
 
+/// Periodic knots of period 1 for as many free control points as parameters: at the parameters for
+/// an odd degree, midway between them for an even one, so that every B-spline peaks near a
+/// parameter of its own. For interpolation on a closed axis; on even parameters no other places
+/// make the collocation matrix symmetric.
+KnotVector knots_at_parameters(std::span<const double> parameters, int degree);
+
 /// Evenly spaced knots for n free control points over [begin, end]; clamped, or periodic when
 /// closed.
 KnotVector uniform_knots(int degree, Index n, double begin, double end,

@@ -31,17 +31,13 @@ struct EpiaSettings {
 
 EpiaSettings settings_from(const FitOptions& options, double data_size) {
     const Settings& s = options.method.settings;
-    EpiaSettings result{
-        setting(s, "eta", 0.6),
-        setting(s, "t_c",
-                options.stop.deviation > 0 ? 0.9 * options.stop.deviation : 2.5e-3 * data_size),
-        static_cast<Index>(setting(s, "rounds", 2)), static_cast<Index>(setting(s, "smoothing", 4)),
-        setting(s, "exact", 0) != 0};
-    if (!(result.eta >= 0 && result.eta < 1))
-        throw InvalidInput(fmt::format("epia: eta = {} is outside 0 to 1", result.eta));
-    if (result.smoothing < 0 || result.rounds < 0)
-        throw InvalidInput("epia: smoothing and rounds must not be negative");
-    return result;
+    const MethodEntry& entry = method_entry("epia");
+    const auto number = [&](const char* name) { return setting(entry, s, name); };
+    const double close_moves =
+        options.stop.deviation > 0 ? 0.9 * options.stop.deviation : 2.5e-3 * data_size;
+    return {number("eta"), setting(s, "t_c").value_or(close_moves),
+            static_cast<Index>(number("rounds")), static_cast<Index>(number("smoothing")),
+            number("exact") == 1};
 }
 
 /// Samples of a sequence that repeat the one before: curvature needs distinct neighbours.
@@ -213,7 +209,7 @@ class Incremental {
     /// Iterates until an insertion is due or the fit ends.
     Run one_run(const DataSide& data, PointSet start) {
         const FitOptions& given = problem_.options;
-        Pia pia(data);
+        Pia pia(data, 1, {}, Divergence::allowed); // a growing error inserts a knot
         FitOptions options = given;
         options.most_frames = 0; // their polygons would be of several sizes
         options.stop.max_iterations = left_;

@@ -1,7 +1,6 @@
 #include <batten/drivers/iteration.hpp>
 
 #include <batten/shape/limits.hpp>
-#include <batten/system/normal_system.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -14,11 +13,10 @@ namespace {
 /// of these.
 class FrameRecorder {
   public:
-    FrameRecorder(Index most, const std::vector<double>& centre) : most_(most), centre_(centre) {}
+    explicit FrameRecorder(Index most) : most_(most) {}
     void record(const Iteration& now, std::vector<Frame>& frames) {
         if (most_ == 0 || now.number % stride_ != 0) return;
-        frames.push_back(
-            {now.number, centre_.empty() ? now.control : uncentred(now.control, centre_)});
+        frames.push_back({now.number, now.control});
         if (static_cast<Index>(frames.size()) < 2 * most_) return;
         stride_ *= 2;
         std::erase_if(frames, [&](const Frame& frame) { return frame.iteration % stride_ != 0; });
@@ -26,13 +24,12 @@ class FrameRecorder {
 
   private:
     Index most_;
-    std::vector<double> centre_;
     Index stride_ = 1;
 };
 
 Observer recording(const FitOptions& options, const DeviationMeasure& deviation,
-                   const std::vector<double>& centre, FitReport& report) {
-    return [&, frames = FrameRecorder(options.most_frames, centre)](const Iteration& now) mutable {
+                   FitReport& report) {
+    return [&, frames = FrameRecorder(options.most_frames)](const Iteration& now) mutable {
         frames.record(now, report.frames);
         if (options.keep_history)
             report.history.push_back({now.number, now.gradient_norm, now.largest_move,
@@ -77,7 +74,7 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     if (limit) report.allowed_inflections = inflection_count(course.control, axes[0].closure());
     const Summary summary =
         iterate(method, course.control, options.stop,
-                {recording(options, deviation, start.centre, report), limit, deviation});
+                {recording(options, deviation, report), limit, deviation, start.centre});
     report.method = method.name();
     report.termination = summary.termination;
     report.iterations = summary.iterations;

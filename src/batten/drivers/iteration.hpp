@@ -18,7 +18,8 @@ struct Departure {
 };
 
 /// Runs a method in the one loop under the options' stop rule, observer, history and shape limit.
-/// `deviation` measures the largest deviation of a sample. Throws InvalidInput as shape_limit does.
+/// `deviation` measures the largest deviation of a sample from absolute control points. Throws
+/// InvalidInput as shape_limit does.
 Course iterated(Method& method, Departure start, const std::vector<KnotVector>& axes,
                 const FitOptions& options, const DeviationMeasure& deviation);
 

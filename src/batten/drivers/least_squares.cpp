@@ -75,15 +75,14 @@ Course solved_in_shape(const Equations& equations, const Problem& problem) {
 
 std::unique_ptr<Method> iteration_for(const Equations& equations, const Problem& problem,
                                       std::string_view method) {
-    const Settings& settings = problem.options.method.settings;
+    const Settings& s = problem.options.method.settings;
     const NormalSystem& system = *equations.system;
-    if (method != "clspia") return make_method(method, system, settings);
+    if (method != "clspia") return make_method(method, system, s);
     const Constraints exact = with_best_lengths(system, equations.held.independent(system.size()));
     return std::make_unique<Clspia>(
-        system, exact,
-        ClspiaSettings{setting(settings, "mu", 0), setting(settings, "mu_1", 0),
-                       setting(settings, "inner_tolerance", 0),
-                       setting(settings, "eigenvalue_tolerance", 1e-2)});
+        system, exact, exactness * problem.size,
+        ClspiaSettings{setting(s, "mu"), setting(s, "mu_1"), setting(s, "inner_tolerance"),
+                       setting(method_entry("clspia"), s, "eigenvalue_tolerance")});
 }
 
 Course iterated_from_start(const Equations& equations, const Problem& problem,
@@ -93,7 +92,7 @@ Course iterated_from_start(const Equations& equations, const Problem& problem,
     const PointSet start = initial_control(problem.samples, problem.parameters, equations.axes,
                                            problem.options.method);
     const DeviationMeasure deviation = [&](const PointSet& control) {
-        const Spline now = Spline::from_free(system.axes(), uncentred(control, system.centre()));
+        const Spline now = Spline::from_free(equations.axes, control);
         return summarise(parametric_deviations(now, problem.samples, problem.parameters),
                          DeviationKind::parametric)
             .maximum;

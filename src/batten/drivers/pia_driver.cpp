@@ -10,7 +10,10 @@
 #include <batten/problem/plan.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
+#include <numeric>
 
 namespace batten {
 
@@ -65,6 +68,48 @@ Setting setting_of_2004(const Samples& samples) {
     return setting;
 }
 
+/// As many control points as samples want knots of their own, where eq. 9.69 would leave the
+/// collocation matrix near-singular.
+KnotVector interpolating(const KnotVector& chosen, const std::vector<double>& parameters) {
+    return chosen.closed() ? knots_at_parameters(parameters, chosen.degree())
+                           : averaged_knots(parameters, chosen.degree());
+}
+
+/// The sample that each control point of a closed axis follows: in the same order round, from the
+/// one that leaves samples nearest to the middles of the B-splines.
+std::vector<Index> samples_round(const KnotVector& axis, const std::vector<double>& parameters) {
+    const auto n = static_cast<Index>(parameters.size());
+    const int p = axis.degree();
+    const auto apart = [&](Index i, Index j) { // B-spline i and sample j
+        double middle = 0;
+        for (int k = 1; k <= p; ++k) middle += axis[i + k] / p;
+        const double turns = (middle - parameters[static_cast<std::size_t>(j)]) / axis.length();
+        return std::abs(turns - std::round(turns));
+    };
+    Index nearest = 0;
+    for (Index j = 1; j < n; ++j)
+        if (apart(0, j) < apart(0, nearest)) nearest = j;
+    Index best = nearest;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (Index first = nearest - p; first <= nearest + p; ++first) {
+        double sum = 0;
+        for (Index i = 0; i < n; ++i) sum += apart(i, (i + first + n) % n);
+        if (sum < smallest) {
+            smallest = sum;
+            best = first;
+        }
+    }
+    std::vector<Index> own;
+    for (Index i = 0; i < n; ++i) own.push_back((i + best + n) % n);
+    return own;
+}
+
+std::vector<Index> in_order(Index count) {
+    std::vector<Index> own(static_cast<std::size_t>(count));
+    std::iota(own.begin(), own.end(), Index{0});
+    return own;
+}
+
 /// Whether nothing is said of the space, so that it is the paper's own.
 bool is_setting_of_2004(const Problem& problem) {
     const ShapeOptions& shape = problem.options.shape;
@@ -85,18 +130,15 @@ Setting square_setting(Problem problem) {
         KnotVector& knots = setting.axes[axis];
         const std::vector<double>& t = setting.parameters.axes[axis];
         const auto m = static_cast<Index>(t.size());
-        const bool ours = shape.knots.empty() && !shape.placement && !knots.closed();
-        if (ours && knots.free_count() == m) knots = averaged_knots(t, knots.degree());
         if (knots.free_count() != m)
             throw InvalidInput(
                 fmt::format("axis {}: pia needs as many control points as samples, got {} and {}",
                             axis, knots.free_count(), m));
+        if (shape.knots.empty() && !shape.placement) knots = interpolating(knots, t);
         if (const auto gap = undetermined(knots, t))
             throw InvalidInput(
                 fmt::format("axis {}: the collocation matrix is singular: {}", axis, *gap));
-        std::vector<Index> own;
-        for (Index i = 0; i < m; ++i) own.push_back(i);
-        setting.own.push_back(std::move(own));
+        setting.own.push_back(knots.closed() ? samples_round(knots, t) : in_order(m));
     }
     return setting;
 }
@@ -128,7 +170,7 @@ Fitted fit_pia(const Problem& problem, std::string_view) {
     PointSet start = method.initial == Initial::data
                          ? own_samples(data.groups(), samples)
                          : initial_control(samples, setting.parameters, setting.axes, method);
-    Pia pia(data, batten::setting(method.settings, "weight", 1), method.moving);
+    Pia pia(data, batten::setting(method_entry("pia"), method.settings, "weight"), method.moving);
     Course course = iterated(pia, {std::move(start)}, setting.axes, problem.options,
                              [&](const PointSet& at) { return largest_length(data.residual(at)); });
     course.report.seconds.emplace_back("solve", watch.lap());

@@ -15,7 +15,7 @@ struct Driver {
     std::string_view name;
     std::string_view description;
     std::string_view source; ///< of the method; empty for what is common knowledge
-    std::vector<MethodSetting> settings;
+    std::span<const MethodSetting> settings;
     /// What it can be asked for, for each kind of samples that it fits.
     std::optional<Requests> sequence;
     std::optional<Requests> grid;

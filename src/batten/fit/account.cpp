@@ -10,8 +10,6 @@ namespace batten {
 
 namespace {
 
-constexpr double exactness = 1e-9; // of the data's size: what counts as held
-
 void note_duplicates(const Parameters& parameters, std::vector<std::string>& notes) {
     for (std::size_t axis = 0; axis < parameters.axes.size(); ++axis) {
         const auto& t = parameters.axes[axis];

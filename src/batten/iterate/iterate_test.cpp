@@ -39,7 +39,7 @@ TEST(Iterate, every_method_reaches_the_direct_solution) {
 TEST(Iterate, rates_are_those_of_the_theory) {
     const auto system = rose_system(50);
     PointSet control(50, 2);
-    Lspia lspia(*system, 0, 1e-12);
+    Lspia lspia(*system, {}, 1e-12);
     const Summary slow = iterate(lspia, control, {});
     EXPECT_NEAR(slow.observed_rate, lspia.predicted_rate(),
                 2e-3); // the slowest mode has not taken over entirely
@@ -54,17 +54,17 @@ TEST(Iterate, weights_outside_the_convergence_region_are_refused) {
     const auto system = rose_system(50);
     PointSet control(50, 2);
     const auto refusal = [&](std::string_view name, Settings settings) {
-        const auto method = make_method(name, *system, settings);
-        return message_of<InvalidInput>([&] { method->start(control); });
+        return message_of<InvalidInput>(
+            [&] { make_method(name, *system, settings)->start(control); });
     };
     EXPECT_EQ(refusal("mlspia", {{"omega", 2.5}}),
-              "mlspia: omega = 2.5 is outside the convergence region 0 < omega < 2");
+              "setting omega = 2.5 of method mlspia is outside 0 < omega < 2");
     EXPECT_EQ(refusal("mlspia", {{"nu", -1}}),
-              "mlspia: nu = -1 is outside the convergence region nu > 0");
-    EXPECT_TRUE(refusal("mlspia", {{"gamma", 5}})
-                    .starts_with("mlspia: gamma = 5 is outside the convergence region "));
+              "setting nu = -1 of method mlspia is outside 0 < nu");
+    EXPECT_TRUE(refusal("mlspia", {{"gamma", 5}, {"nu", 1}})
+                    .starts_with("setting gamma = 5 of method mlspia is outside "));
     EXPECT_TRUE(refusal("lspia", {{"mu", 10}})
-                    .starts_with("lspia: mu = 10 is outside the convergence region 0 < mu < "));
+                    .starts_with("setting mu = 10 of method lspia is outside 0 < mu < "));
     EXPECT_EQ(message_of<InvalidInput>([&] {
                   make_method("mlspia", *system, {{"omgea", 1}});
               }),

@@ -5,6 +5,9 @@
 
 namespace batten {
 
+/// Part of the data's size by which something may miss what must hold exactly and count as held.
+inline constexpr double exactness = 1e-9;
+
 /// Throws InvalidInput, naming the entry, when what must hold does not fit the samples: indices out
 /// of range or given twice, tangents of another dimension, of no length or against the order of a
 /// sequence, boundaries of an axis that is closed or does not exist, of another degree or

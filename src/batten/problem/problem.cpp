@@ -20,6 +20,7 @@ void check_numbers(const FitOptions& options) {
     if (options.tolerance.max_control_points < 0)
         throw InvalidInput(fmt::format("at most {} control points: a positive number is needed",
                                        options.tolerance.max_control_points));
+    check(options.stop);
     if (options.most_frames < 0)
         throw InvalidInput(fmt::format("frames: {} is negative", options.most_frames));
 }
