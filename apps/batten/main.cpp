@@ -1,7 +1,7 @@
-#include "cad_loader.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 
+#include <batten/cad/cad.hpp>
 #include <batten/core/errors.hpp>
 #include <batten/core/names.hpp>
 
@@ -71,7 +71,7 @@ int complain(std::string_view what, int status) {
 
 int main(int argc, char** argv) {
     command::watch_interrupts();
-    command::register_cad_formats();
+    cad::register_formats({.program = {}, .cancelled = command::interrupted});
     CLI::App app("Fits B-spline curves, surfaces and volumes to data points.", "batten");
     app.set_version_flag("--version", "batten " BATTEN_VERSION);
     app.footer("Exit status: 0 done; 2 wrong usage or input; 3 file trouble; 4 written, but a "

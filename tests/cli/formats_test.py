@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 BATTEN = os.environ["BATTEN"]
-HAS_CAD = (pathlib.Path(BATTEN).parent / "libbatten_cad.so").exists()
+HAS_CAD = (pathlib.Path(BATTEN).parent / "batten-cad").exists()
 
 
 def evaluate(knots, control, degree, parameters):

@@ -70,6 +70,9 @@ const PointFormat& point_format(const std::filesystem::path& path) {
         fmt::format("{}: {}", path.string(), unknown_name("extension of points", wanted, known)));
 }
 
+/// Formats that are known once a library of their own has been linked and asked to.
+constexpr std::string_view cad_extensions[] = {".step", ".stp", ".igs", ".iges"};
+
 const SplineFormat& spline_format(const std::filesystem::path& path) {
     const std::string wanted = path == "-" ? ".json" : extension(path);
     std::vector<std::string_view> known;
@@ -77,6 +80,10 @@ const SplineFormat& spline_format(const std::filesystem::path& path) {
         if (format.extension == wanted) return format;
         known.push_back(format.extension);
     }
+    if (std::ranges::find(cad_extensions, wanted) != std::end(cad_extensions))
+        throw InvalidInput(fmt::format("{}: {} files need batten::cad: link it and call "
+                                       "batten::cad::register_formats() first",
+                                       path.string(), wanted));
     throw InvalidInput(fmt::format("{}: unknown extension '{}'; known: {}", path.string(), wanted,
                                    fmt::join(known, ", ")));
 }
