@@ -21,6 +21,11 @@ Fitted surface_within(const Problem& problem);
 
 inline constexpr double most_part = 0.9;   ///< of the samples may become control points
 inline constexpr double smooth_part = 0.5; ///< beyond it a fit is near-interpolation
+/// Whether there are so many control points that a spline follows each sample.
+inline bool near_interpolation(Index control_points, Index samples) {
+    return static_cast<double>(control_points) > smooth_part * static_cast<double>(samples);
+}
+
 /// Part of what is allowed between samples beyond which a spline is no reading of them.
 inline constexpr double wild_part = 3;
 
