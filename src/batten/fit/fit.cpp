@@ -3,6 +3,7 @@
 #include <batten/core/stopwatch.hpp>
 #include <batten/drivers/choose.hpp>
 #include <batten/fit/account.hpp>
+#include <batten/fit/rescale.hpp>
 #include <batten/problem/subset.hpp>
 #include <batten/robust/outliers.hpp>
 
@@ -71,6 +72,8 @@ FitResult with_outliers(FitResult result, const Problem& problem,
 FitResult fit(const Samples& samples, const FitOptions& options) {
     const ThreadLimit limit(options.threads);
     check_settings(method_entry(options.method.name), options.method.settings);
+    if (const double unit = usual_unit(samples.points); unit != 1)
+        return rescaled(fit(rescaled(samples, unit), rescaled(options, unit)), 1 / unit);
     Stopwatch watch;
     const Problem problem = problem_of(samples, options);
     if (options.outliers == Outliers::count) return solved(problem, watch.lap());

@@ -158,6 +158,9 @@ struct FitOptions {
     /// Termination::cancelled.
     std::function<bool()> cancelled{};
     Observer observer{};
+    /// Lengths are given in this unit's parts: words multiply them by its inverse. Set by fit() for
+    /// coordinates whose squares leave the range of numbers.
+    double unit = 1;
 };
 
 } // namespace batten

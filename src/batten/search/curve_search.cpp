@@ -64,6 +64,7 @@ CurveTask task_of(const Problem& problem) {
                    .closure = problem.axes.closures[0],
                    .hold = problem.options.hold,
                    .parameters = problem.parameters.axes[0],
+                   .unit = problem.options.unit,
                    .cancelled = problem.options.cancelled};
     task.seam_continuity = seam < 0 ? task.degree - 1 : seam;
     const bool closed = task.closure == Closure::closed;
@@ -130,8 +131,6 @@ CurveOutcome searched(CurveTask& task, const ToleranceOptions& options, Index mo
 } // namespace
 
 Fitted curve_within(const Problem& given) {
-    Fitted result;
-    FitReport& report = result.report;
     Stopwatch watch;
     const Subset turn = one_turn(given);
     const Problem problem = turn.of(with_seam_at_first(given, turn));
@@ -151,15 +150,13 @@ Fitted curve_within(const Problem& given) {
     if (found.trial.control.empty())
         throw SolverError("no number of control points gives a solvable system: the samples' "
                           "parameters coincide");
-    report.stages = found.stages;
-    report.seconds.emplace_back("search", watch.lap());
-    result.spline = spline_of(found.trial);
-    result.parameters.axes = {found.trial.parameters};
+    Fitted result{spline_of(found.trial),
+                  {{found.trial.parameters}, {}},
+                  judged(task, outcome, limit),
+                  DeviationKind::distance};
     if (!turn.whole())
         result.parameters.axes[0].push_back(found.trial.parameters[0] + found.trial.knots.length());
-    report.tolerance = smallest;
-    judge(task, outcome, limit, report);
-    result.judged_by = DeviationKind::distance;
+    result.report.seconds.emplace_back("search", watch.lap());
     return result;
 }
 

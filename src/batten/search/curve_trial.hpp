@@ -36,6 +36,8 @@ struct CurveTask {
     /// Greatest part of what is allowed between samples (measure/between_samples.hpp) that a
     /// thinner curve may use.
     double between = 1;
+    /// FitOptions::unit, for words.
+    double unit = 1;
     /// Asked every round; true ends the search with Cancelled.
     std::function<bool()> cancelled{};
 };

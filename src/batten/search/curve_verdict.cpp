@@ -44,16 +44,18 @@ Index curve_inflections(const CurveTrial& trial, double height) {
 
 namespace {
 
-/// Counts the inflections of curve and samples where they can be told.
-void count_inflections(const CurveTask& task, const CurveWithin& found, FitReport& report) {
-    if (!can_show_inflections(task)) return;
+/// The inflections of curve and samples, where they can be told.
+FitReport inflections_of(const CurveTask& task, const CurveTrial& trial) {
+    FitReport report;
+    report.tolerance = tightest(task);
+    if (!can_show_inflections(task)) return report;
     const double height = visible_height(task, report.tolerance);
-    report.curve_inflections = curve_inflections(found.trial, height);
+    report.curve_inflections = curve_inflections(trial, height);
     report.data_inflections = shown_inflections(task, height);
     if (task.most_inflections >= 0)
-        report.inflections = inflection_count(found.trial.control, task.closure);
-    report.allowed_inflections =
-        task.hold.preserve == Preserve::nothing ? -1 : task.most_inflections;
+        report.inflections = inflection_count(trial.control, task.closure);
+    if (task.hold.preserve != Preserve::nothing) report.allowed_inflections = task.most_inflections;
+    return report;
 }
 
 double largest_deviation(const CurveTask& task, const CurveTrial& trial) {
@@ -74,13 +76,13 @@ std::string between_words(const BetweenSamples& between) {
 
 } // namespace
 
-void judge(const CurveTask& task, const CurveOutcome& outcome, Index allowed, FitReport& report) {
+FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allowed) {
     const CurveWithin& found = outcome.found;
     const Index n = found.trial.knots.free_count();
     const Index m = task.samples.size();
-    const double deviation = largest_deviation(task, found.trial);
+    FitReport report = inflections_of(task, found.trial);
+    report.stages = found.stages;
     report.termination = found.met ? Termination::tolerance_met : Termination::tolerance_not_met;
-    count_inflections(task, found, report);
     report.noise_level = outcome.noise;
     const BetweenSamples between = check_reached(task, found.trial);
     report.between_samples = between.excess;
@@ -89,12 +91,14 @@ void judge(const CurveTask& task, const CurveOutcome& outcome, Index allowed, Fi
                                                 .allowed = allowed,
                                                 .noise = outcome.noise,
                                                 .control_points = n,
-                                                .deviation = deviation});
-    report.verdict += near_interpolation_words(n, m, outcome.noise);
+                                                .deviation = largest_deviation(task, found.trial),
+                                                .unit = task.unit});
+    report.verdict += near_interpolation_words(n, m, outcome.noise, task.unit);
     report.verdict += between_words(between);
     if (found.met && report.curve_inflections > report.data_inflections)
         report.verdict += fmt::format("; the curve has {} inflections, the samples show {}",
                                       report.curve_inflections, report.data_inflections);
+    return report;
 }
 
 } // namespace batten

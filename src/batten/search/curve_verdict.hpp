@@ -26,8 +26,8 @@ struct CurveOutcome {
     NotMet why = NotMet::crowded; ///< where it is not met
 };
 
-/// Enters the certificate and the verdict in the report, whose tolerance stands; `allowed`: control
-/// points, where a limit was stated.
-void judge(const CurveTask& task, const CurveOutcome& outcome, Index allowed, FitReport& report);
+/// The account of a search: the certificate, the verdict and the ending; `allowed`: control points,
+/// where a limit was stated.
+FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allowed);
 
 } // namespace batten

@@ -15,7 +15,7 @@ std::string reason(const Shortfall& s) {
     case NotMet::noise:
         return fmt::format("the samples' noise level is {:.3g}, and only a curve through nearly "
                            "every sample would follow it",
-                           s.noise);
+                           s.noise / s.unit);
     case NotMet::held:
         return "what must hold keeps the spline from some samples; without it they might be "
                "reached";
@@ -35,13 +35,15 @@ std::string reason(const Shortfall& s) {
 std::string not_met_words(const Shortfall& s) {
     return fmt::format("not met: {}; the {} fit found: {} control points, largest deviation {:.3g}",
                        reason(s), s.why == NotMet::noise ? "best smooth" : "closest smooth",
-                       s.control_points, s.deviation);
+                       s.control_points, s.deviation / s.unit);
 }
 
-std::string near_interpolation_words(Index control_points, Index samples, double noise) {
+std::string near_interpolation_words(Index control_points, Index samples, double noise,
+                                     double unit) {
     if (!near_interpolation(control_points, samples)) return {};
-    const std::string level = noise > 0 ? fmt::format("noise level seen in them {:.3g}", noise)
-                                        : "their noise level is unknown";
+    const std::string level = noise > 0
+                                  ? fmt::format("noise level seen in them {:.3g}", noise / unit)
+                                  : "their noise level is unknown";
     return fmt::format(", but it nearly interpolates: {} control points for {} samples; {}",
                        control_points, samples, level);
 }

@@ -22,6 +22,7 @@ struct Shortfall {
     double noise = 0;         ///< the samples' level; 0: unknown
     Index control_points = 0; ///< of the spline handed out in place of one that meets it
     double deviation = 0;     ///< its largest
+    double unit = 1;          ///< FitOptions::unit, of both lengths
 };
 
 /// The verdict in words: why, and what the spline is.
@@ -29,6 +30,7 @@ std::string not_met_words(const Shortfall& shortfall);
 
 /// For splines with so many control points that they follow each sample, with the samples' level of
 /// noise (0: unknown); empty for others.
-std::string near_interpolation_words(Index control_points, Index samples, double noise);
+std::string near_interpolation_words(Index control_points, Index samples, double noise,
+                                     double unit);
 
 } // namespace batten
