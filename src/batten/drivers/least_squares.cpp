@@ -133,7 +133,9 @@ void run(Method& method, PointSet& control, const FitOptions& options,
     report.predicted_rate = method.predicted_rate();
     report.settings = method.settings();
     if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
-    if (limit) report.inflections = inflection_count(control, axes[0].closure());
+    if (limit)
+        report.inflections = inflection_count(
+            centre.empty() ? control : uncentred(control, centre), axes[0].closure());
 }
 
 namespace {
