@@ -134,8 +134,8 @@ void run(Method& method, PointSet& control, const FitOptions& options,
     report.settings = method.settings();
     if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
     if (limit)
-        report.inflections = inflection_count(
-            centre.empty() ? control : uncentred(control, centre), axes[0].closure());
+        report.inflections = inflection_count(centre.empty() ? control : uncentred(control, centre),
+                                              axes[0].closure());
 }
 
 namespace {
