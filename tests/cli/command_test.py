@@ -237,7 +237,7 @@ class Refusals(Command):
         self.bad(2, "method lspia cannot interpolate samples exactly; use direct or clspia", "fit", "r.csv", "-n", 8, "--method", "lspia", "--interpolate", "ends")
         self.bad(2, "preserve: shape is kept for curves in the plane, not for a surface or volume in dimension 3",
                  "fit", "p.csv", "--grid", "9x9", "-n", "5x5", "--preserve", "convexity")
-        self.bad(2, "clspia: mu_1 = 0.1 is outside the convergence region mu_1 > ", "fit", "r.csv", "-n", 8, "--method", "clspia",
+        self.bad(2, "setting mu_1 = 0.1 of method clspia is outside ", "fit", "r.csv", "-n", 8, "--method", "clspia",
                  "--interpolate", "ends", "--set", "mu_1=0.1", prefix=True)
         self.bad(2, "unknown paper 'mlpia'; did you mean 'mlspia'?", "reproduce", "mlpia")
 

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace batten {
 
@@ -68,7 +69,8 @@ Krylov arnoldi(const VectorOperator& b, Vector start, Index steps) {
     return result;
 }
 
-/// What these show of the slowest direction, and by how much it fails to be an eigenvalue's own.
+/// The rate that these show, by how much its direction fails to be an eigenvalue's own, and a sum
+/// of the slowest directions to go on from.
 struct Slowest {
     double rate;
     double residual;
@@ -76,13 +78,20 @@ struct Slowest {
 };
 
 Slowest slowest_of(const Krylov& krylov, double weight) {
+    constexpr std::size_t most_summed = 6;
     const Eigen::EigenSolver<Eigen::MatrixXd> solver(krylov.h);
-    Eigen::Index at = 0;
-    const double rate = (1.0 - weight * solver.eigenvalues().array()).abs().maxCoeff(&at);
-    const Eigen::VectorXcd y = solver.eigenvectors().col(at).normalized();
-    Slowest now{rate, weight * krylov.beta * std::abs(y[y.size() - 1]), Vector(krylov.q[0].size())};
+    const Eigen::ArrayXd rates = (1.0 - weight * solver.eigenvalues().array()).abs();
+    std::vector<Eigen::Index> order(krylov.q.size());
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    std::ranges::sort(order, [&](Eigen::Index i, Eigen::Index j) { return rates[i] > rates[j]; });
+    const Eigen::VectorXcd first = solver.eigenvectors().col(order[0]).normalized();
+    order.resize(std::min(order.size(), most_summed));
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(krylov.h.rows());
+    for (Eigen::Index k : order) sum += solver.eigenvectors().col(k).normalized().real();
+    Slowest now{rates[order[0]], weight * krylov.beta * std::abs(first[first.size() - 1]),
+                Vector(krylov.q[0].size())};
     for (std::size_t i = 0; i < krylov.q.size(); ++i)
-        add(now.direction, y[static_cast<Eigen::Index>(i)].real(), krylov.q[i]);
+        add(now.direction, sum[static_cast<Eigen::Index>(i)], krylov.q[i]);
     return now;
 }
 

@@ -8,8 +8,8 @@ namespace batten {
 
 /// How much work a rate is worth.
 struct RateEffort {
-    Index directions = 60;
-    int restarts = 6;
+    Index directions = 80;
+    int restarts = 8;
 };
 
 /// How fast the moves d of an iteration d <- d - weight B d fade: the largest |1 - weight theta|

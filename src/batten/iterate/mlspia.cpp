@@ -36,7 +36,13 @@ void Mlspia::choose_weights(const ExtremeEigenvalues& sigma2) {
     const double longest = longest_step(omega_, gamma_);
     nu_ = given_.nu.value_or(s1 < longest * sr ? 1 / (s1 * sr) : longest / 2 / sigma2.largest);
     check_setting("mlspia", "nu", nu_);
-    const double step = sigma2.largest * nu_; // eq. 11
+    if (given_.nu && !given_.gamma) { // eq. 11 for the one of the two that the caller chose
+        check_setting("mlspia", "nu", nu_, {.low = 0, .high = longest / sigma2.largest},
+                      fmt::format("its region of convergence for omega = {:.6g}, gamma = {:.6g}",
+                                  omega_, gamma_));
+        return;
+    }
+    const double step = sigma2.largest * nu_;
     check_setting(
         "mlspia", "gamma", gamma_,
         {.low = omega_ - omega_ / step, .high = omega_ / 2 - (omega_ - 2) / step},

@@ -34,6 +34,7 @@ std::optional<double> meeting(const Point& p, const Point& move, const Point& a,
 
 void keep_inflections(const PointSet& polygon, PointSet& moves, Closure closure, double alpha,
                       Barrier barrier) {
+    constexpr double kept_roundings = 16; // the turns stay certain after a shift of coordinates
     const Index n = polygon.size();
     PointSet moved = polygon; // points before i hold their new places
     const auto at = [&](Index i) -> std::optional<Point> {
@@ -44,8 +45,7 @@ void keep_inflections(const PointSet& polygon, PointSet& moves, Closure closure,
     const auto sign = [&](Index i) { // of the turn at i
         const auto a = at(i - 1), b = at(i), c = at(i + 1);
         if (!a || !b || !c) return 0;
-        const double t = turn(*a, *b, *c);
-        return t > 0 ? 1 : t < 0 ? -1 : 0;
+        return turn_sign(*a, *b, *c, kept_roundings);
     };
     const auto turns = [&](Index i) { return std::array{sign(i - 1), sign(i), sign(i + 1)}; };
     for (Index i = 0; i < n; ++i) {

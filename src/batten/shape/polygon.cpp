@@ -1,6 +1,8 @@
 #include <batten/shape/polygon.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace batten {
 
@@ -24,17 +26,29 @@ std::vector<Index> distinct(const PointSet& polygon, Closure closure) {
 
 } // namespace
 
+int turn_sign(std::span<const double> a, std::span<const double> b, std::span<const double> c,
+              double roundings) {
+    const double t = turn(a, b, c);
+    double largest = 0;
+    double lengths = 0;
+    for (std::size_t d = 0; d < 2; ++d) {
+        largest = std::max({largest, std::abs(a[d]), std::abs(b[d]), std::abs(c[d])});
+        lengths += std::abs(b[d] - a[d]) + std::abs(c[d] - b[d]);
+    }
+    const double rounding = std::numeric_limits<double>::epsilon() * largest * lengths;
+    if (std::abs(t) <= roundings * rounding) return 0;
+    return t > 0 ? 1 : -1;
+}
+
 std::vector<int> turn_signs(const PointSet& polygon, Closure closure) {
     const std::vector<Index> kept = distinct(polygon, closure);
     const std::size_t n = kept.size();
     std::vector<int> signs;
     if (n < 3) return signs;
     const std::size_t turns = closure == Closure::closed ? n : n - 2;
-    for (std::size_t i = 0; i < turns; ++i) {
-        const double t =
-            turn(polygon[kept[i % n]], polygon[kept[(i + 1) % n]], polygon[kept[(i + 2) % n]]);
-        signs.push_back(t > 0 ? 1 : t < 0 ? -1 : 0);
-    }
+    for (std::size_t i = 0; i < turns; ++i)
+        signs.push_back(turn_sign(polygon[kept[i % n]], polygon[kept[(i + 1) % n]],
+                                  polygon[kept[(i + 2) % n]]));
     return signs;
 }
 
