@@ -11,6 +11,8 @@ namespace batten {
 template <class T>
 using PerAxis = std::array<T, 3>;
 
+using AxisMatrix = PerAxis<PerAxis<double>>;
+
 /// A place on a spline: a polynomial piece, and where in it (0 to 1 along each axis).
 struct PlaceInPiece {
     Index piece = 0;

@@ -130,8 +130,8 @@ ClosestSearch::Verdict ClosestSearch::judge(Index piece, BezierNet& net) {
 ClosestSearch::Verdict ClosestSearch::descend_on(Index piece, const BezierNet& net) {
     const bool convex = squares_.is_convex();
     const bool holds_best = best_.piece == piece && net.contains(best_.local);
-    if (!convex && holds_best) return Verdict::open; // it was descended to
     const PerAxis<double> start = holds_best ? net.in_net(best_.local) : squares_.least_at();
+    if (!convex && !is_promising(net, start)) return Verdict::open;
     const Descent found =
         descend(net, pieces_.axis_count(), dim_, start, convex ? most_steps : few_steps);
     improve(piece, net, found.at, found.square);
@@ -140,6 +140,10 @@ ClosestSearch::Verdict ClosestSearch::descend_on(Index piece, const BezierNet& n
     const double slack = tolerance_ / 4;
     const bool ended = distance <= slack || found.gain <= slack * (2 * distance - slack);
     return ended ? Verdict::settled : Verdict::open;
+}
+
+bool ClosestSearch::is_promising(const BezierNet& net, const PerAxis<double>& place) const {
+    return descend(net, pieces_.axis_count(), dim_, place, 0).square < best_square_;
 }
 
 /// Puts the halves along the longest axis in the net's place, the more promising one last.

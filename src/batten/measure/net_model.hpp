@@ -4,8 +4,6 @@
 
 namespace batten {
 
-using AxisMatrix = PerAxis<PerAxis<double>>;
-
 /// Half the squared distance of a net's point from the origin, to second order in its place.
 struct NetModel {
     double square = 0; ///< the whole squared distance

@@ -23,19 +23,22 @@ class SquaredDistance {
     /// A face that holds the minimum because there is a direction that leads down to it
     /// everywhere.
     std::optional<Face> downhill_face() const;
-    /// Whether it is strictly convex: one local minimum at most.
-    bool is_convex() const;
+    /// Whether it is strictly convex, with one local minimum at most: its Hessian is a mean of
+    /// matrices that are all positive definite.
+    bool is_convex();
 
   private:
     void square_points(const BezierNet& net, Index dim);
     void multiply(const BezierNet& net, Index dim);
     double least_curvature(std::size_t axis) const;
-    double largest_twist(std::size_t a, std::size_t b) const;
+    void find_hessian();
     Index stride(std::size_t axis) const;
 
     PerAxis<Index> order_{}; // coefficients per axis
     std::vector<double> coefficients_;
     std::vector<double> scaled_; // control points times binomials
+    std::vector<double> slope_;
+    PerAxis<PerAxis<std::vector<double>>> hessian_; // its coefficients, on and above the diagonal
     double least_ = 0;
     Index least_index_ = 0;
     double allowance_ = 0; // bound of the rounding error of a coefficient
