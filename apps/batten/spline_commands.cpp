@@ -98,10 +98,8 @@ Samples points_of(const PointFlags& flags) {
 void compare(const std::string& spline_path, const PointFlags& points) {
     const Spline spline = read_spline(spline_path);
     const Samples samples = in_space_of(spline, points_of(points));
-    std::vector<double> distances;
-    for (const ClosestPoint& found : closest_points(spline, samples.points))
-        distances.push_back(found.distance);
-    const Deviation d = summarise(distances, DeviationKind::distance);
+    const Deviation d =
+        summarise(closest_distances(spline, samples.points), DeviationKind::distance);
     fmt::print("{} points, distance to the closest point of the spline: largest {:.6g} at sample "
                "{}, rms {:.6g}\n",
                samples.size(), d.maximum, d.worst_sample, d.rms);
@@ -156,11 +154,8 @@ void plot(const std::string& spline_path, const PointFlags& points, const std::s
     if (!points.points.empty()) {
         samples = in_space_of(spline, points_of(points));
         scene.samples = &samples;
-        if (spline.axis_count() < 3) { // of a volume no closest point is known
-            for (const ClosestPoint& found : closest_points(spline, samples.points))
-                distances.push_back(found.distance);
-            scene.deviations = &distances;
-        }
+        distances = closest_distances(spline, samples.points);
+        scene.deviations = &distances;
     }
     write_file(output, svg_picture(scene));
 }

@@ -34,9 +34,18 @@ struct ClosestPoint {
     double distance = 0;
 };
 
-/// Closest points of a curve or surface to the points: a coarse search over the pieces refined by
-/// Newton's method [PieglTiller1997, section 6.1]. Throws InvalidInput for dimensions that differ,
-/// or a volume.
+/// Closest points of a curve, surface or volume to the points (m x dim): the distance is the least
+/// there is to 1e-12 of the spline's size, or of itself when that is larger. Throws InvalidInput
+/// for dimensions that differ, a coordinate or a control point that is not finite.
 std::vector<ClosestPoint> closest_points(const Spline& spline, const Points& points);
+
+/// The same distances alone.
+std::vector<double> closest_distances(const Spline& spline, const Points& points);
+
+/// The same for samples whose parameters are near their closest points, as those of a fit are: the
+/// faster the nearer, and as certain when they are not. Parameters are wrapped on closed axes,
+/// moved to the end of open ones. Throws InvalidInput also when their number does not match.
+std::vector<double> closest_distances(const Spline& spline, const Samples& samples,
+                                      const Parameters& starts);
 
 } // namespace batten
