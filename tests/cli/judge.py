@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 from scipy.interpolate import BSpline
+from scipy.optimize import least_squares
 
 BATTEN = os.environ["BATTEN"]
 ROOT = pathlib.Path(os.environ["BATTEN_ROOT"])
@@ -96,13 +97,9 @@ def surface_distances(spline, points, each=8):
     found = []
     for p in points:
         i, j = np.unravel_index(((dense - p) ** 2).sum(axis=-1).argmin(), dense.shape[:2])
-        box = [(t[max(k - 1, 0)], t[min(k + 1, t.size - 1)]) for t, k in ((u, i), (v, j))]
-        for _ in range(16):
-            s = [np.linspace(*side, 9) for side in box]
-            away = ((evaluate(spline, *s) - p) ** 2).sum(axis=-1)
-            at = np.unravel_index(away.argmin(), away.shape)
-            box = [(t[max(k - 1, 0)], t[min(k + 1, 8)]) for t, k in zip(s, at)]
-        found.append(np.sqrt(away.min()))
+        away = lambda t: evaluate(spline, t[:1], t[1:])[0, 0] - p
+        best = least_squares(away, [u[i], v[j]], bounds=([u[0], v[0]], [u[-1], v[-1]]), xtol=1e-15, ftol=1e-15, gtol=1e-15)
+        found.append(min(np.linalg.norm(dense[i, j] - p), np.linalg.norm(best.fun)))
     return np.array(found)
 
 

@@ -187,7 +187,7 @@ TEST(Iterate, stops_for_its_limit_its_deviation_and_rounding) {
     const Summary close =
         iterate(again, control, {.relative_gradient = 0, .deviation = 0.5}, {{}, {}, measure});
     EXPECT_EQ(close.iterations, 3);
-    EXPECT_EQ(close.termination, Termination::tolerance_met);
+    EXPECT_EQ(close.termination, Termination::converged);
     ConjugateGradients cg(*system);
     control = PointSet(30, 2);
     const Summary summary = iterate(cg, control, {.relative_gradient = 0});

@@ -7,16 +7,15 @@ namespace {
 
 using testing::random_points;
 
-/// The signs of the turns at the inner points (closed: at all), from cross products.
+/// The signs of the turns at points 1, 2, ... (closed: n of them), from cross products.
 std::vector<int> signs(const PointSet& polygon, Closure closure) {
     const Index n = polygon.size();
     std::vector<int> found;
     for (Index k = 0; k < (closure == Closure::closed ? n : n - 2); ++k) {
-        const Index i = closure == Closure::closed ? (k + n - 1) % n : k;
         const auto edge = [&](Index from, Index d) {
             return reference::Long(polygon((from + 1) % n, d)) - polygon(from % n, d);
         };
-        const reference::Long cross = edge(i, 0) * edge(i + 1, 1) - edge(i, 1) * edge(i + 1, 0);
+        const reference::Long cross = edge(k, 0) * edge(k + 1, 1) - edge(k, 1) * edge(k + 1, 0);
         found.push_back(cross > 0 ? 1 : cross < 0 ? -1 : 0);
     }
     return found;
@@ -62,23 +61,19 @@ TEST(Limits, keep_every_turn_for_any_moves) {
 }
 
 TEST(Limits, rays_hold_only_on_the_neighbours_side) {
-    // the middle point moves down across the line through its neighbours, far outside the stretch
-    // between them
-    const PointSet polygon({0, 0, 1, 0, 5, 1, 2, 0.1, 3, 0}, 2);
-    PointSet moves(5, 2);
-    moves(2, 1) = -3;
-    PointSet lines = moves;
-    keep_inflections(polygon, lines, Closure::open, 0.8, Barrier::lines);
-    EXPECT_GT(lines(2, 1), -3);
-    const PointSet far({0, 0, 1, 0, -5, 1, 2, 0, 3, 0},
-                       2); // meets the line through (1, 0) and (2, 0) behind both
-    PointSet whole(5, 2);
-    whole(2, 1) = -3;
-    PointSet ray = whole;
-    keep_inflections(far, whole, Closure::open, 0.8, Barrier::lines);
-    keep_inflections(far, ray, Closure::open, 0.8, Barrier::rays);
-    EXPECT_DOUBLE_EQ(whole(2, 1), -0.8); // 0.8 of the way to the line
-    EXPECT_DOUBLE_EQ(ray(2, 1), -3);     // it meets no ray, and moves freely
+    // point 2 falls across the line through points 0 and 1; the ray leaves point 1 through point 0
+    const auto fall = [](double x, Barrier barrier) {
+        PointSet moves(5, 2);
+        moves(2, 1) = -3;
+        keep_inflections(PointSet({0, 0, 1, 0, x, 1, 3, 10, 4, 10}, 2), moves, Closure::open, 0.8,
+                         barrier);
+        return moves(2, 1);
+    };
+    const double held = -0.8;                         // 0.8 of the way to the line
+    EXPECT_DOUBLE_EQ(fall(-1, Barrier::lines), held); // before point 0
+    EXPECT_DOUBLE_EQ(fall(-1, Barrier::rays), held);
+    EXPECT_DOUBLE_EQ(fall(2, Barrier::lines), held); // behind point 1, where no ray is
+    EXPECT_DOUBLE_EQ(fall(2, Barrier::rays), -3);
 }
 
 TEST(Limits, leave_harmless_moves_alone) {
