@@ -13,18 +13,9 @@ std::string step_text(const Scene& scene);
 std::string iges_text(const Scene& scene);
 
 /// B-spline curves and surfaces of a STEP or IGES file, in the file's own unit. Throws FileError
-/// when it holds none or cannot be read, InvalidInput for rational ones.
+/// when it holds none, is cut off or cannot be read, InvalidInput for rational ones, SolverError
+/// when Open CASCADE gives up.
 std::vector<Spline> parse_step(const std::filesystem::path& path, const std::string& content);
 std::vector<Spline> parse_iges(const std::filesystem::path& path, const std::string& content);
 
-/// What the loaded module offers: the functions above behind one symbol, `batten_cad_module`.
-struct Module {
-    std::string (*step_text)(const Scene&);
-    std::string (*iges_text)(const Scene&);
-    std::vector<Spline> (*parse_step)(const std::filesystem::path&, const std::string&);
-    std::vector<Spline> (*parse_iges)(const std::filesystem::path&, const std::string&);
-};
-
 } // namespace batten::cad
-
-extern "C" __attribute__((visibility("default"))) const batten::cad::Module* batten_cad_module();

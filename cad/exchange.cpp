@@ -1,5 +1,6 @@
 #include "cad_formats.hpp"
 #include "geometry.hpp"
+#include "whole_iges.hpp"
 
 #include <batten/core/core.hpp>
 #include <batten/core/names.hpp>
@@ -29,9 +30,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
+#include <cmath>
+#include <fstream>
 #include <mutex>
 #include <sstream>
+#include <sys/mman.h>
 #include <unistd.h>
 
 namespace batten::cad {
@@ -49,27 +52,20 @@ std::unique_lock<std::mutex> alone() {
     return lock;
 }
 
-/// A file in the folder for temporary files that is gone with the object.
-class TemporaryFile {
+/// A file that is only in memory, under a name that Open CASCADE can open: nothing of it stays,
+/// however this process ends.
+class MemoryFile {
   public:
-    explicit TemporaryFile(const std::string& suffix) {
-        std::string name =
-            (std::filesystem::temp_directory_path() / ("batten-XXXXXX" + suffix)).string();
-        const int file = mkstemps(name.data(), static_cast<int>(suffix.size()));
-        if (file < 0) throw FileError(name + ": no temporary file can be made");
-        close(file);
-        path_ = name;
+    MemoryFile() : file_(memfd_create("batten-cad", MFD_CLOEXEC)) {
+        if (file_ < 0) throw SolverError("no file can be made in memory");
     }
-    ~TemporaryFile() {
-        std::error_code ignored;
-        std::filesystem::remove(path_, ignored);
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    const std::string& path() const { return path_; }
+    ~MemoryFile() { close(file_); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+    std::string path() const { return fmt::format("/proc/self/fd/{}", file_); }
 
   private:
-    std::string path_;
+    int file_;
 };
 
 /// Open CASCADE's name of the unit.
@@ -116,26 +112,44 @@ auto translated(Work work) {
     try {
         return work();
     } catch (const Standard_Failure& failure) {
-        throw SolverError(fmt::format("Open CASCADE: {}", failure.GetMessageString()));
+        const std::string_view words = failure.GetMessageString();
+        throw SolverError(plain(fmt::format("{}{}{}", failure.DynamicType()->Name(),
+                                            words.empty() ? "" : ": ", words)));
     }
 }
 
 template <class Writer>
-std::string written(Writer& writer, const std::string& suffix) {
-    const TemporaryFile file(suffix);
-    writer(file.path());
+std::string written(Writer& writer) {
+    const MemoryFile file;
+    if (!writer(file.path())) throw SolverError("the text cannot be made");
     return read_file(file.path());
+}
+
+void put(const MemoryFile& file, const std::string& content) {
+    std::ofstream stream(file.path(), std::ios::binary);
+    stream << content;
+    if (!stream.flush()) throw SolverError("the file cannot be put into memory");
+}
+
+void check_finite(const std::vector<Spline>& splines, const std::filesystem::path& path) {
+    for (const Spline& spline : splines)
+        for (double x : spline.control_points().values())
+            if (!std::isfinite(x))
+                throw FileError(path.string() + ": a control point is not a finite number");
 }
 
 std::vector<Spline> found_in(const std::filesystem::path& path, const TopoDS_Shape& shape) {
     std::vector<Spline> splines;
     try {
         splines = splines_of(shape);
-    } catch (const InvalidInput& error) {
+    } catch (const RationalSpline& error) {
         throw InvalidInput(fmt::format("{}: {}", path.string(), error.what()));
+    } catch (const InvalidInput& error) {
+        throw FileError(fmt::format("{}: {}", path.string(), error.what()));
     }
     if (splines.empty())
         throw FileError(path.string() + ": the file holds no B-spline curve or surface");
+    check_finite(splines, path);
     return splines;
 }
 
@@ -164,10 +178,9 @@ std::string step_text(const Scene& scene) {
         header.SetTimeStamp(words(scene.date.empty() ? fixed_date : plain(scene.date)));
         header.SetOriginatingSystem(words("batten"));
         const auto write = [&](const std::string& path) {
-            if (writer.Write(path.c_str()) != IFSelect_RetDone)
-                throw FileError(path + ": cannot be written");
+            return writer.Write(path.c_str()) == IFSelect_RetDone;
         };
-        return written(write, ".step");
+        return written(write);
     });
 }
 
@@ -199,10 +212,8 @@ std::string iges_text(const Scene& scene) {
         global.SetCompanyName(words("batten"));
         global.SetSystemId(words("batten"));
         writer.Model()->SetGlobalSection(global);
-        const auto write = [&](const std::string& path) {
-            if (!writer.Write(path.c_str())) throw FileError(path + ": cannot be written");
-        };
-        return written(write, ".igs");
+        const auto write = [&](const std::string& path) { return writer.Write(path.c_str()); };
+        return written(write);
     });
 }
 
@@ -229,10 +240,11 @@ std::vector<Spline> parse_step(const std::filesystem::path& path, const std::str
 }
 
 std::vector<Spline> parse_iges(const std::filesystem::path& path, const std::string& content) {
+    check_whole_iges(path, content);
     const auto lock = alone();
     return translated([&] {
-        const TemporaryFile file(".igs");
-        write_file(file.path(), content);
+        const MemoryFile file;
+        put(file, content);
         IGESControl_Reader reader;
         Interface_Static::SetIVal("read.iges.bspline.continuity", 0); // knots stay as they are
         if (reader.ReadFile(file.path().c_str()) != IFSelect_RetDone)
@@ -250,9 +262,3 @@ std::vector<Spline> parse_iges(const std::filesystem::path& path, const std::str
 }
 
 } // namespace batten::cad
-
-const batten::cad::Module* batten_cad_module() {
-    using namespace batten::cad;
-    static const Module module{step_text, iges_text, parse_step, parse_iges};
-    return &module;
-}

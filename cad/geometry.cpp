@@ -84,8 +84,8 @@ void append(PointSet& control, Index at, const gp_Pnt& p) {
 
 Spline spline_of(Handle(Geom_BSplineCurve) curve) {
     if (curve->IsRational())
-        throw InvalidInput("the curve is rational (its poles have weights); only plain B-splines "
-                           "are read");
+        throw RationalSpline("the curve is rational (its poles have weights); only plain B-splines "
+                             "are read");
     if (curve->IsPeriodic()) {
         curve = Handle(Geom_BSplineCurve)::DownCast(curve->Copy());
         curve->SetNotPeriodic();
@@ -98,8 +98,9 @@ Spline spline_of(Handle(Geom_BSplineCurve) curve) {
 
 Spline spline_of(Handle(Geom_BSplineSurface) surface) {
     if (surface->IsURational() || surface->IsVRational())
-        throw InvalidInput("the surface is rational (its poles have weights); only plain B-splines "
-                           "are read");
+        throw RationalSpline(
+            "the surface is rational (its poles have weights); only plain B-splines "
+            "are read");
     if (surface->IsUPeriodic() || surface->IsVPeriodic()) {
         surface = Handle(Geom_BSplineSurface)::DownCast(surface->Copy());
         surface->SetUNotPeriodic();

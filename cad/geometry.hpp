@@ -8,12 +8,18 @@
 
 namespace batten::cad {
 
+/// A curve or surface whose poles have weights.
+class RationalSpline : public InvalidInput {
+  public:
+    using InvalidInput::InvalidInput;
+};
+
 /// The spline as an edge or a face; throws InvalidInput for a volume, or a dimension other than 2
 /// or 3.
 TopoDS_Shape shape_of(const Spline& spline);
 
 /// All B-spline curves and surfaces in a shape: of faces the surfaces, of edges outside faces the
-/// curves. Throws InvalidInput for rational ones.
+/// curves. Throws RationalSpline, and InvalidInput for what is no spline.
 std::vector<Spline> splines_of(const TopoDS_Shape& shape);
 
 } // namespace batten::cad

@@ -4,8 +4,8 @@
 
 namespace batten::command {
 
-/// Thrown once everything is written: the fit stands, but the stated tolerance was not reached.
-struct ToleranceNotMet {};
+/// Thrown once everything is written: the fit stands, but a stated goal was not reached.
+struct GoalMissed {};
 
 /// Each adds its subcommand; the work is done in the subcommand's callback and reports trouble by
 /// exceptions.

@@ -68,9 +68,6 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     };
     progress.say("fitting");
     FitResult result = fit(samples, options);
-    if (result.report.tolerance > 0 && flags.tolerance == 0 && flags.tolerances.empty())
-        result.report.notes.emplace_back(
-            "no size and no tolerance were stated: a thousandth of the data's diagonal was taken");
     if (result.report.termination == Termination::cancelled) throw Cancelled("interrupted");
     if (!result.report.usable())
         throw SolverError(
@@ -97,7 +94,7 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     if (!flags.summary.empty()) write_file(flags.summary, result.report.to_json());
     const bool stdout_taken = flags.summary == "-" || std::ranges::count(flags.outputs, "-") > 0;
     if (!flags.quiet) fmt::print(stdout_taken ? stderr : stdout, "{}", result.report.full());
-    if (result.report.termination == Termination::tolerance_not_met) throw ToleranceNotMet{};
+    if (!result.report.goals_met()) throw GoalMissed{};
 }
 
 } // namespace

@@ -5,7 +5,6 @@
 #include <batten/io/points_file.hpp>
 #include <batten/io/spline_file.hpp>
 #include <batten/iterate/methods.hpp>
-#include <batten/parametrize/project.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -91,36 +90,26 @@ std::vector<std::vector<double>> given_knots(const std::string& path) {
     return knots;
 }
 
-ShapeOptions shape_options(const FitFlags& flags, bool closed_given, const Samples& samples) {
+ShapeOptions shape_options(const FitFlags& flags, const CLI::App& fit, const Samples& samples) {
     constexpr std::string_view projections[] = {"xy", "xz", "yz", "plane"};
     constexpr std::string_view rules[] = {"uniform", "chord", "centripetal"};
     ShapeOptions shape;
     shape.degree = flags.degree;
     if (!flags.control_points.empty())
         shape.control_points = parse_shape("--control-points", flags.control_points);
-    if (closed_given) set_closures(flags, samples, shape);
-    shape.parametrization =
-        static_cast<Parametrization>(parse_choice("--parametrize", flags.parametrize, rules));
-    if (flags.heights) shape.parametrization = Parametrization::uniform;
+    if (fit.count("--closed") > 0) set_closures(flags, samples, shape);
+    if (fit.count("--parametrize") > 0)
+        shape.parametrization =
+            static_cast<Parametrization>(parse_choice("--parametrize", flags.parametrize, rules));
     shape.parameters = given_parameters(flags);
-    const bool plain = !shape.parameters && samples.grid.empty();
-    if (flags.project.empty() && plain) {
-        // files of scanned points are clouds: of airborne ones the ground plane is known
-        const std::string kind = extension(flags.points);
-        if (kind == ".las") shape.parameters = projected(samples, Projection::xy);
-        if (kind == ".ply" || kind == ".obj" || kind == ".stl")
-            shape.parameters = projected(samples, Projection::plane);
-    }
-    if (!flags.project.empty()) {
-        if (!plain)
-            throw InvalidInput(
-                "--project: the parameters are given already, by --parameters or the grid");
-        shape.parameters = projected(samples, static_cast<Projection>(parse_choice(
-                                                  "--project", flags.project, projections)));
-    }
+    if (!flags.project.empty())
+        shape.projection =
+            static_cast<Projection>(parse_choice("--project", flags.project, projections));
     if (flags.knots == "uniform")
         shape.placement = KnotPlacement::uniform;
-    else if (flags.knots != "data")
+    else if (fit.count("--knots") > 0 && flags.knots == "data")
+        shape.placement = KnotPlacement::data;
+    else if (fit.count("--knots") > 0)
         shape.knots = given_knots(flags.knots);
     return shape;
 }
@@ -207,8 +196,7 @@ HoldOptions hold_options(const FitFlags& flags, const Samples& samples) {
     return hold;
 }
 
-ToleranceOptions tolerance_options(const FitFlags& flags, const CLI::App& fit,
-                                   const Samples& samples) {
+ToleranceOptions tolerance_options(const FitFlags& flags, const CLI::App& fit) {
     ToleranceOptions tolerance;
     if (fit.count("--tolerance") > 0 && !(flags.tolerance > 0))
         throw InvalidInput(fmt::format("--tolerance {}: must be positive", flags.tolerance));
@@ -218,14 +206,6 @@ ToleranceOptions tolerance_options(const FitFlags& flags, const CLI::App& fit,
     tolerance.value = flags.tolerance;
     if (!flags.tolerances.empty()) tolerance.per_sample = read_table(flags.tolerances).values();
     tolerance.max_control_points = flags.max_control_points;
-    const bool sized = !flags.control_points.empty() ||
-                       (flags.knots != "data" && flags.knots != "uniform") ||
-                       !flags.smooth.empty() || flags.method == "pia" || flags.method == "epia";
-    if (!tolerance.stated() &&
-        !sized) { // neither a size nor a tolerance: a thousandth of the data's size
-        tolerance.value = diagonal(samples.points) / 1000;
-        if (!(tolerance.value > 0)) tolerance.value = 1e-3;
-    }
     if (flags.corners == "none")
         tolerance.corners = Corners::none;
     else if (flags.corners != "auto") {
@@ -263,19 +243,7 @@ namespace {
 /// Throws InvalidInput for flags that say nothing, or contradict each other, beside the others.
 void check_together(const FitFlags& flags, const CLI::App& fit) {
     const auto given = [&](const char* name) { return fit.count(name) > 0; };
-    const bool tolerance = given("--tolerance") || given("--tolerances");
-    const bool knots = flags.knots != "data" && flags.knots != "uniform";
     const auto refuse = [](const char* words) { throw InvalidInput(words); };
-    if (given("--control-points") && knots)
-        refuse("--control-points and --knots FILE: the knots state the number of control points");
-    if (tolerance && given("--knots") && !knots)
-        refuse("--tolerance: knots are found by the fit, --knots says nothing");
-    if (given("--control-points") && given("--max-control-points"))
-        refuse("--max-control-points: it bounds a fit to a tolerance, --control-points states the "
-               "size");
-    if (given("--control-points") && given("--corners"))
-        refuse("--corners: they are for fits to a tolerance, not for a stated size");
-    if (given("--moving") && flags.method != "pia") refuse("--moving: it is for --method pia");
     if (given("--smooth-order") && !given("--smooth")) refuse("--smooth-order: it needs --smooth");
     if (given("--spacing") && !flags.heights) refuse("--spacing: it is for --heights");
 }
@@ -285,8 +253,8 @@ void check_together(const FitFlags& flags, const CLI::App& fit) {
 FitOptions options_of(const FitFlags& flags, const CLI::App& fit, const Samples& samples) {
     check_together(flags, fit);
     FitOptions options;
-    options.shape = shape_options(flags, fit.count("--closed") > 0, samples);
-    options.tolerance = tolerance_options(flags, fit, samples);
+    options.shape = shape_options(flags, fit, samples);
+    options.tolerance = tolerance_options(flags, fit);
     options.method = method_options(flags);
     options.hold = hold_options(flags, samples);
     options.smooth = smooth_options(flags);

@@ -1,8 +1,8 @@
 #include "commands.hpp"
 #include "parse.hpp"
 
+#include <batten/drivers/table.hpp>
 #include <batten/io/points_file.hpp>
-#include <batten/iterate/methods.hpp>
 #include <batten/samples/generate.hpp>
 
 #include <fmt/format.h>
@@ -37,13 +37,19 @@ void add_generate(CLI::App& app) {
 
 void add_methods(CLI::App& app) {
     CLI::App* sub = app.add_subcommand("methods", "The methods and their settings");
-    sub->footer("Example:\n  batten methods");
-    sub->callback([] {
-        for (const MethodEntry& entry : methods()) {
-            fmt::print("{:<10}{}{}\n", entry.name, entry.description,
+    auto table = std::make_shared<bool>(false);
+    sub->add_flag("--table", *table, "What each can be asked for, as a table");
+    sub->footer("Examples:\n  batten methods\n  batten methods --table");
+    sub->callback([table] {
+        if (*table) return fmt::print("{}", driver_table());
+        fmt::print("{:<18}the fastest that takes what is asked\n", "auto");
+        for (const Driver& entry : drivers()) {
+            fmt::print("{:<18}{}{}\n", entry.name, entry.description,
                        entry.source.empty() ? "" : fmt::format(" [{}]", entry.source));
             for (const MethodSetting& s : entry.settings)
-                fmt::print("            --set {}=...  {}\n", s.name, s.meaning);
+                fmt::print("                  --set {}=...  {}, {} (default {}){}\n", s.name,
+                           s.meaning, s.range.words(s.name), s.default_words(),
+                           s.source.empty() ? "" : fmt::format(" [{}]", s.source));
         }
     });
 }

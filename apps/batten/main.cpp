@@ -1,7 +1,7 @@
-#include "cad_loader.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 
+#include <batten/cad/cad.hpp>
 #include <batten/core/errors.hpp>
 #include <batten/core/names.hpp>
 
@@ -71,11 +71,11 @@ int complain(std::string_view what, int status) {
 
 int main(int argc, char** argv) {
     command::watch_interrupts();
-    command::register_cad_formats();
+    cad::register_formats({.program = {}, .cancelled = command::interrupted});
     CLI::App app("Fits B-spline curves, surfaces and volumes to data points.", "batten");
     app.set_version_flag("--version", "batten " BATTEN_VERSION);
-    app.footer("Exit status: 0 done; 2 wrong usage or input; 3 file trouble; 4 written, but the "
-               "tolerance was not reached; 130 interrupted.");
+    app.footer("Exit status: 0 done; 2 wrong usage or input; 3 file trouble; 4 written, but a "
+               "stated goal was not reached; 130 interrupted.");
     app.require_subcommand(0, 1);
     add_commands(app);
     try {
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
         return complain(words_for(error, app), wrong_input);
-    } catch (const command::ToleranceNotMet&) {
+    } catch (const command::GoalMissed&) {
         return not_within;
     } catch (const Cancelled&) {
         return complain("interrupted; nothing was written", stopped);

@@ -39,13 +39,9 @@ FitResult figures(const Samples& samples, FitOptions options, const std::filesys
                            h.max_deviation, h.constraint_error);
     write_file(stem.string() + "_history.csv", csv);
     if (samples.dim() != 2) return result;
-    const bool data_side = options.method.name == "pia" || options.method.name == "epia";
-    for (auto& [step, control] : kept) {
+    for (const auto& [step, control] : kept) {
         if (control.size() != result.spline.axis(0).free_count())
-            continue;   // before a knot was inserted
-        if (!data_side) // the observer's control points are relative to the first sample
-            for (Index i = 0; i < control.size(); ++i)
-                for (Index d = 0; d < 2; ++d) control(i, d) += samples.points(0, d);
+            continue; // before a knot was inserted
         const Spline spline = Spline::from_free(result.spline.axes(), control);
         write_spline(fmt::format("{}_step{}.svg", stem.string(), step),
                      {spline, &samples, fmt::format("step {}", step)});

@@ -11,7 +11,7 @@ from scipy.optimize import least_squares
 BATTEN = os.environ["BATTEN"]
 ROOT = pathlib.Path(os.environ["BATTEN_ROOT"])
 SHARED = ROOT.parent / "shared" / "data"
-HAS_CAD = (pathlib.Path(BATTEN).parent / "libbatten_cad.so").exists()
+HAS_CAD = (pathlib.Path(BATTEN).parent / "batten-cad").exists()
 GUARD = 1200  # seconds: ends a test that hangs, never one on a busy machine
 # before a command: files and folders keep their modes' word, also for root
 ORDINARY = ["setpriv", "--bounding-set=-dac_override,-dac_read_search"] if os.geteuid() == 0 else []

@@ -1,13 +1,34 @@
-# Installs the build to a folder, builds the consumer against it, runs it.
+# Installs the build to a folder, builds the consumers against it, runs them: one with the library alone and, where STEP and IGES
+# were built, one with batten::cad, which must work after the package has moved too.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(status)
     message(FATAL_ERROR "failed: ${ARGN}")
   endif()
 endfunction()
+
+function(build_consumers prefix folder)
+  run(${CMAKE_COMMAND} -S ${SOURCE} -B ${folder} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix} -DWITH_CAD=${WITH_CAD})
+  run(${CMAKE_COMMAND} --build ${folder})
+  run(${folder}/consumer)
+  if(WITH_CAD)
+    run(${folder}/cad_consumer ${folder})
+  endif()
+endfunction()
+
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
-run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/consumer)
+build_consumers(${WORK}/prefix ${WORK}/build)
 run(${WORK}/prefix/bin/batten --version)
+if(WITH_CAD)
+  run(${WORK}/prefix/bin/batten convert ${WORK}/build/a.step -o ${WORK}/build/b.igs)
+  file(RENAME ${WORK}/prefix ${WORK}/moved)
+  build_consumers(${WORK}/moved ${WORK}/build_moved)
+  run(${WORK}/moved/bin/batten convert ${WORK}/build/a.step -o ${WORK}/build/b.step)
+else()
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/none -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix -DWITH_CAD=ON
+                  RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+  if(NOT status)
+    message(FATAL_ERROR "the component cad was found in a package without it")
+  endif()
+endif()

@@ -1,5 +1,7 @@
 #include <batten/basis/knot_vector.hpp>
 
+#include <batten/core/distinct.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -66,15 +68,19 @@ Index KnotVector::span(double t) const {
 }
 
 double KnotVector::wrapped(double t) const {
-    if (!closed() || (t >= begin() && t <= end())) return t;
+    if (!closed() || contains(t)) return t;
     const double turns = std::floor((t - begin()) / length());
     return std::clamp(t - turns * length(), begin(), end());
 }
 
 std::vector<double> KnotVector::breakpoints() const {
-    std::vector<double> result(knots_.begin() + degree_, knots_.begin() + control_count() + 1);
-    result.erase(std::unique(result.begin(), result.end()), result.end());
-    return result;
+    return without_repeats(
+        std::vector(knots_.begin() + degree_, knots_.begin() + control_count() + 1));
+}
+
+InvalidInput outside_domain(const KnotVector& knots, std::string_view what) {
+    return InvalidInput(
+        fmt::format("{} is outside the knots' domain [{}, {}]", what, knots.begin(), knots.end()));
 }
 
 } // namespace batten

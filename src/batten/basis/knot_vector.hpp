@@ -3,6 +3,7 @@
 #include <batten/core/core.hpp>
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace batten {
@@ -42,6 +43,9 @@ class KnotVector {
     /// Parameters outside the domain get the first or last span.
     Index span(double t) const;
 
+    /// Whether t is in the domain, its ends included.
+    bool contains(double t) const { return t >= begin() && t <= end(); }
+
     /// t moved by whole periods into the domain of a closed axis; unchanged on an open one.
     double wrapped(double t) const;
 
@@ -56,5 +60,8 @@ class KnotVector {
     std::vector<double> knots_;
     Closure closure_ = Closure::open;
 };
+
+/// What to throw for a parameter outside the domain, which `what` names with its value.
+InvalidInput outside_domain(const KnotVector& knots, std::string_view what);
 
 } // namespace batten

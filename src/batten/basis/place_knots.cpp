@@ -23,7 +23,7 @@ Index interior_count(int degree, Index n, Closure closure) {
 } // namespace
 
 KnotVector knots_from_parameters(std::span<const double> parameters, int degree, Index n,
-                                 Closure closure) {
+                                 Closure closure, KnotPlacement rule) {
     check_count(degree, n);
     const auto m = static_cast<Index>(parameters.size());
     if (n > m)
@@ -31,9 +31,11 @@ KnotVector knots_from_parameters(std::span<const double> parameters, int degree,
             fmt::format("{} control points need at least as many samples, got {}", n, m));
     const Index count = interior_count(degree, n, closure);
     const double d = static_cast<double>(m) / static_cast<double>(count + 1);
+    // eq. 9.69 puts knot j at place j d - 1 among the samples, its mirror image at j d
+    const double shift = rule == KnotPlacement::both_ends ? 0.5 : 0;
     std::vector<double> interior;
     for (Index j = 1; j <= count; ++j) {
-        const double jd = static_cast<double>(j) * d;
+        const double jd = static_cast<double>(j) * d + shift;
         const auto i = static_cast<Index>(std::floor(jd));
         const double alpha = jd - static_cast<double>(i);
         interior.push_back((1 - alpha) * parameters[static_cast<std::size_t>(i - 1)] +
@@ -53,6 +55,21 @@ KnotVector averaged_knots(std::span<const double> parameters, int degree) {
         interior.push_back(sum / degree);
     }
     return knots_around(degree, interior, parameters.front(), parameters.back());
+}
+
+KnotVector knots_at_parameters(std::span<const double> parameters, int degree) {
+    check_count(degree, static_cast<Index>(parameters.size()));
+    std::vector<double> cycle(parameters.begin(), parameters.end());
+    if (degree % 2 == 0) {
+        double before = parameters.back() - 1;
+        for (double& t : cycle) {
+            const double middle = (before + t) / 2;
+            before = t;
+            t = middle;
+        }
+    }
+    return knots_around(degree, std::span(cycle).subspan(1), cycle.front(), cycle.front() + 1,
+                        Closure::closed);
 }
 
 KnotVector uniform_knots(int degree, Index n, double begin, double end, Closure closure) {

@@ -7,19 +7,27 @@ namespace batten {
 /// Where knots go for a stated number of control points.
 enum class KnotPlacement {
     data, ///< between the parameters, every span holding some [PieglTiller1997, eq. 9.68 and 9.69]
-    uniform, ///< evenly over the domain
+    both_ends, ///< the same, counted from the middle: reversed parameters give reversed knots
+    uniform,   ///< evenly over the domain
 };
 
 /// Knots of degree p for n free control points over [parameters.front(), parameters.back()]
-/// (closed: one period from 0 to 1), placed between the ascending `parameters`. Throws InvalidInput
-/// when n < p + 1, or n exceeds the number of parameters.
+/// (closed: one period from 0 to 1), placed between the ascending `parameters` by `rule`, data or
+/// both_ends. Throws InvalidInput when n < p + 1, or n exceeds the number of parameters.
 KnotVector knots_from_parameters(std::span<const double> parameters, int degree, Index n,
-                                 Closure closure = Closure::open);
+                                 Closure closure = Closure::open,
+                                 KnotPlacement rule = KnotPlacement::data);
 
 /// Clamped knots for as many control points as parameters, interior knots the means of degree
 /// consecutive parameters [PieglTiller1997, eq. 9.8; LinZhang2011, eq. 38]: for interpolation and
 /// for EPIA.
 KnotVector averaged_knots(std::span<const double> parameters, int degree);
+
+/// Periodic knots of period 1 for as many free control points as parameters: at the parameters for
+/// an odd degree, midway between them for an even one, so that every B-spline peaks near a
+/// parameter of its own. For interpolation on a closed axis; on even parameters no other places
+/// make the collocation matrix symmetric.
+KnotVector knots_at_parameters(std::span<const double> parameters, int degree);
 
 /// Evenly spaced knots for n free control points over [begin, end]; clamped, or periodic when
 /// closed.

@@ -1,16 +1,20 @@
 #include <batten/drivers/epia_driver.hpp>
 
+#include <batten/core/grid_index.hpp>
 #include <batten/core/stopwatch.hpp>
 #include <batten/drivers/epia_axis.hpp>
-#include <batten/drivers/least_squares.hpp>
+#include <batten/drivers/iteration.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/iterate/pia.hpp>
+#include <batten/problem/initial.hpp>
 #include <batten/problem/plan.hpp>
+#include <batten/problem/subset.hpp>
 #include <batten/samples/curvature.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace batten {
 
@@ -27,108 +31,101 @@ struct EpiaSettings {
 
 EpiaSettings settings_from(const FitOptions& options, double data_size) {
     const Settings& s = options.method.settings;
-    EpiaSettings result{
-        setting(s, "eta", 0.6),
-        setting(s, "t_c",
-                options.stop.deviation > 0 ? 0.9 * options.stop.deviation : 2.5e-3 * data_size),
-        static_cast<Index>(setting(s, "rounds", 2)), static_cast<Index>(setting(s, "smoothing", 4)),
-        setting(s, "exact", 0) != 0};
-    if (!(result.eta >= 0 && result.eta < 1))
-        throw InvalidInput(fmt::format("epia: eta = {} is outside 0 to 1", result.eta));
-    if (result.smoothing < 0 || result.rounds < 0)
-        throw InvalidInput("epia: smoothing and rounds must not be negative");
-    return result;
+    const MethodEntry& entry = method_entry("epia");
+    const auto number = [&](const char* name) { return setting(entry, s, name); };
+    const double close_moves =
+        options.stop.deviation > 0 ? 0.9 * options.stop.deviation : 2.5e-3 * data_size;
+    return {number("eta"), setting(s, "t_c").value_or(close_moves),
+            static_cast<Index>(number("rounds")), static_cast<Index>(number("smoothing")),
+            number("exact") == 1};
 }
 
-/// A sequence without identical consecutive samples (curvature needs distinct neighbours); grids
-/// stay as they are.
-struct Distinct {
-    Samples samples;
-    std::vector<Index> place; ///< of every given sample among the distinct ones
-};
+/// Samples of a sequence that repeat the one before: curvature needs distinct neighbours.
+std::vector<Index> repetitions(const Samples& samples) {
+    std::vector<Index> repeated;
+    for (Index i = 1; samples.grid.empty() && i < samples.size(); ++i)
+        if (std::ranges::equal(samples.points[i], samples.points[i - 1])) repeated.push_back(i);
+    return repeated;
+}
 
-Distinct without_repetitions(const Samples& samples) {
-    Distinct result{samples, {}};
-    if (!samples.grid.empty()) return result;
-    std::vector<double> kept;
-    for (Index i = 0; i < samples.size(); ++i) {
-        const auto p = samples.points[i];
-        if (i == 0 || !std::ranges::equal(p, samples.points[i - 1]))
-            kept.insert(kept.end(), p.begin(), p.end());
-        result.place.push_back(static_cast<Index>(kept.size()) / samples.dim() - 1);
-    }
-    result.samples.points = Points(PointSet(std::move(kept), samples.dim()));
-    return result;
+/// The problem in which a held sample that repeats the one before is that one.
+Problem with_firsts_held(Problem problem, const std::vector<Index>& repeated) {
+    std::vector<Index>& held = problem.options.hold.interpolate;
+    for (Index& i : held)
+        while (std::ranges::binary_search(repeated, i)) --i;
+    std::ranges::sort(held);
+    held.erase(std::unique(held.begin(), held.end()), held.end());
+    return problem;
+}
+
+/// A sample that repeats the one before has its parameter, too.
+Parameters with_repetitions(const Subset& distinct, const Parameters& own, Index count) {
+    if (distinct.whole()) return own;
+    std::vector<double> t;
+    for (Index i = 0; i < count; ++i)
+        t.push_back(own.axes[0][static_cast<std::size_t>(distinct.place(i + 1) - 1)]);
+    return {{std::move(t)}, {}};
 }
 
 /// Curvature along an axis: of the sequence, or total curvatures averaged over the other axis of a
 /// grid [eq. 32 and 33].
 std::vector<double> axis_curvature(const Samples& samples, std::size_t axis, Index smoothing) {
     if (samples.grid.empty()) return discrete_curvature(samples.points, smoothing);
-    const Index m0 = samples.grid[0];
-    const Index m1 = samples.grid[1];
-    std::vector<double> total(static_cast<std::size_t>(m0 * m1));
-    const auto add_lines = [&](Index lines, Index count, Index line_step, Index step) {
-        for (Index line = 0; line < lines; ++line) {
-            PointSet strand(count, samples.dim());
-            for (Index j = 0; j < count; ++j)
-                std::ranges::copy(samples.points[line * line_step + j * step], strand[j].begin());
-            const std::vector<double> k = discrete_curvature(strand, smoothing);
-            for (Index j = 0; j < count; ++j)
-                total[static_cast<std::size_t>(line * line_step + j * step)] +=
-                    k[static_cast<std::size_t>(j)] * k[static_cast<std::size_t>(j)];
-        }
-    };
-    add_lines(m0, m1, m1, 1);
-    add_lines(m1, m0, 1, m1);
-    std::vector<double> mean(static_cast<std::size_t>(axis == 0 ? m0 : m1));
-    for (Index i = 0; i < m0; ++i)
-        for (Index j = 0; j < m1; ++j)
-            mean[static_cast<std::size_t>(axis == 0 ? i : j)] +=
-                total[static_cast<std::size_t>(i * m1 + j)] /
-                static_cast<double>(axis == 0 ? m1 : m0);
+    const GridIndex grid(samples.grid);
+    std::vector<double> total(static_cast<std::size_t>(grid.size()));
+    for (std::size_t along : {std::size_t{1}, std::size_t{0}})
+        grid.for_each_strand(along, [&](const GridIndex::Strand& strand) {
+            PointSet line(strand.count, samples.dim());
+            for (Index j = 0; j < strand.count; ++j)
+                std::ranges::copy(samples.points[strand[j]], line[j].begin());
+            const std::vector<double> k = discrete_curvature(line, smoothing);
+            for (Index j = 0; j < strand.count; ++j) {
+                const double bend = k[static_cast<std::size_t>(j)];
+                total[static_cast<std::size_t>(strand[j])] += bend * bend;
+            }
+        });
+    std::vector<double> mean(static_cast<std::size_t>(grid.length(axis)));
+    const auto others = static_cast<double>(grid.length(1 - axis));
+    grid.for_each([&](const GridIndex::Place& place, Index at) {
+        mean[static_cast<std::size_t>(place[axis])] += total[static_cast<std::size_t>(at)] / others;
+    });
     return mean;
 }
 
 /// The incremental fit's state between insertions.
 class Incremental {
   public:
-    Incremental(const Samples& samples, const Parameters& parameters, const FitOptions& options,
-                const EpiaSettings& settings, const std::vector<Index>& alone)
-        : samples_(samples), parameters_(parameters), options_(options), settings_(settings) {
-        const std::vector<int> degree =
-            degrees_per_axis(options.shape, static_cast<Index>(parameters.axes.size()));
-        for (std::size_t k = 0; k < parameters.axes.size(); ++k) {
-            std::vector<double> curvature = axis_curvature(samples, k, settings.smoothing);
+    Incremental(const Problem& problem, const EpiaSettings& settings)
+        : problem_(problem), settings_(settings), left_(problem.options.stop.max_iterations) {
+        const auto& t = problem.parameters.axes;
+        for (std::size_t k = 0; k < t.size(); ++k) {
+            std::vector<double> curvature = axis_curvature(problem.samples, k, settings.smoothing);
             std::vector<Index> dominant = dominant_indices(curvature);
-            axes_.emplace_back(degree[k], parameters.axes[k], std::move(curvature),
-                               std::move(dominant), alone);
+            axes_.emplace_back(problem.axes.degree[k], t[k], std::move(curvature),
+                               std::move(dominant), problem.options.hold.interpolate);
         }
     }
 
-    FitResult fit(FitReport report) {
+    Fitted fit() {
         for (Index round = 0; round < settings_.rounds && split_invalid(); ++round) {
         }
         PointSet control = initial_points();
         Spline spline = Spline::from_free(knots(), control);
-        report.notes.push_back(fmt::format("epia started with {} control points", control.size()));
-        Index left = options_.stop.max_iterations;
+        report_.notes.push_back(fmt::format("epia started with {} control points", control.size()));
         while (true) {
-            const DataSide data(spline.axes(), samples_, parameters_, groups());
-            control = spline.free_control_points();
-            const bool insert = one_run(data, control, left, report);
-            spline = Spline::from_free(spline.axes(), control);
-            if (!insert) break;
-            const Spline refined = with_knot_inserted(spline, data.residual(control));
-            if (refined.control_points().size() ==
-                control.size()) { // every sample is a control point's own
-                report.termination = Termination::stalled;
+            const DataSide data(spline.axes(), problem_.samples, problem_.parameters, groups());
+            const Run run = one_run(data, spline.free_control_points());
+            spline = Spline::from_free(spline.axes(), run.control);
+            if (!run.insert) break;
+            const Spline refined = with_knot_inserted(spline, data.residual(run.control));
+            if (refined.control_points().size() == run.control.size()) {
+                report_.termination = Termination::stalled; // all samples are control points' own
                 break;
             }
             spline = refined;
         }
-        report.iterations = options_.stop.max_iterations - left;
-        return {std::move(spline), std::move(report), {}};
+        report_.iterations = problem_.options.stop.max_iterations - left_;
+        return {std::move(spline), problem_.parameters, std::move(report_)};
     }
 
   private:
@@ -141,29 +138,29 @@ class Incremental {
     SampleGroups groups() const {
         std::vector<std::vector<SampleRange>> ranges;
         for (const EpiaAxis& axis : axes_) ranges.push_back(axis.groups());
-        return {std::move(ranges), samples_.shape()};
+        return {std::move(ranges), problem_.samples.shape()};
     }
 
     /// P^0: the dominant samples themselves [eq. 31 and 36].
     PointSet initial_points() const {
         std::vector<double> values;
         const auto append = [&](Index sample) {
-            const auto p = samples_.points[sample];
+            const auto p = problem_.samples.points[sample];
             values.insert(values.end(), p.begin(), p.end());
         };
         for (Index i : axes_[0].controls()) {
             if (axes_.size() == 1)
                 append(i);
             else
-                for (Index j : axes_[1].controls()) append(i * samples_.grid[1] + j);
+                for (Index j : axes_[1].controls()) append(i * problem_.samples.grid[1] + j);
         }
-        return {std::move(values), samples_.dim()};
+        return {std::move(values), problem_.samples.dim()};
     }
 
     /// Splits the groups whose residuals do not point one way [eq. 47], by their own fence markers;
     /// false when all are valid.
     bool split_invalid() {
-        const DataSide data(knots(), samples_, parameters_, groups());
+        const DataSide data(knots(), problem_.samples, problem_.parameters, groups());
         Pia step(data);
         step.propose(initial_points());
         const std::vector<bool> valid = step.valid(settings_.eta);
@@ -197,25 +194,30 @@ class Incremental {
 
     /// Whether the stated number of control points, if any, forbids more.
     bool full() const {
-        const auto& limit = options_.shape.control_points;
-        for (std::size_t k = 0; k < axes_.size() && !limit.empty(); ++k)
-            if (static_cast<Index>(axes_[k].controls().size()) >= limit[limit.size() == 1 ? 0 : k])
-                return true;
+        const std::vector<Index>& limit = problem_.axes.control_points;
+        for (std::size_t k = 0; k < limit.size(); ++k)
+            if (static_cast<Index>(axes_[k].controls().size()) >= limit[k]) return true;
         return false;
     }
 
-    /// Iterates until an insertion is due (true) or the fit ends (false); `left` counts down the
-    /// iterations allowed.
-    bool one_run(const DataSide& data, PointSet& control, Index& left, FitReport& report) {
-        Pia pia(data);
-        FitOptions options = options_;
+    /// The control points after a run, and whether an insertion is due.
+    struct Run {
+        PointSet control;
+        bool insert;
+    };
+
+    /// Iterates until an insertion is due or the fit ends.
+    Run one_run(const DataSide& data, PointSet start) {
+        const FitOptions& given = problem_.options;
+        Pia pia(data, 1, {}, Divergence::allowed); // a growing error inserts a knot
+        FitOptions options = given;
         options.most_frames = 0; // their polygons would be of several sizes
-        options.stop.max_iterations = left;
-        options.stop.relative_gradient = full() ? options_.stop.relative_gradient : 0;
+        options.stop.max_iterations = left_;
+        options.stop.relative_gradient = full() ? given.stop.relative_gradient : 0;
         bool due = false;
         bool insert = false;
         options.observer = [&](const Iteration& now) {
-            if (options_.observer && options_.observer(now) == Continue::no) return Continue::no;
+            if (given.observer && given.observer(now) == Continue::no) return Continue::no;
             if (due) { // the moves after which the insertion is due have been made
                 insert = true;
                 return Continue::no;
@@ -226,22 +228,24 @@ class Incremental {
             last_error_ = e_d;
             return Continue::yes;
         };
-        const std::size_t before = report.history.size();
-        const Index done = options_.stop.max_iterations - left;
-        run(
-            pia, control, options, data.axes(),
-            [&](const PointSet&) { return largest_length(pia.residual()); }, report);
-        left -= report.iterations;
-        for (std::size_t k = before; k < report.history.size(); ++k)
-            report.history[k].iteration += done;
-        if (before > 0 && before < report.history.size())
-            report.history.erase(report.history.begin() + static_cast<Index>(before) -
-                                 1); // one entry per iteration
-        if (report.termination == Termination::converged && options_.stop.deviation > 0)
-            report.termination = Termination::tolerance_met;
+        Course course = iterated(pia, {std::move(start)}, data.axes(), options,
+                                 [&](const PointSet&) { return largest_length(pia.residual()); });
+        enter(std::move(course.report));
         if (insert) last_error_ = std::numeric_limits<double>::infinity();
-        if (insert && left == 0) report.termination = Termination::iteration_limit;
-        return insert && left > 0;
+        if (insert && left_ == 0) report_.termination = Termination::iteration_limit;
+        return {std::move(course.control), insert && left_ > 0};
+    }
+
+    /// Joins a run's account to those before: one entry of the history per iteration.
+    void enter(FitReport run) {
+        const Index done = problem_.options.stop.max_iterations - left_;
+        left_ -= run.iterations;
+        for (HistoryEntry& entry : run.history) entry.iteration += done;
+        if (!report_.history.empty() && !run.history.empty()) report_.history.pop_back();
+        report_.history.insert(report_.history.end(), run.history.begin(), run.history.end());
+        run.history = std::move(report_.history);
+        run.notes = std::move(report_.notes);
+        report_ = std::move(run);
     }
 
     /// The spline with the worst sample's parameters inserted that are not control points' own yet;
@@ -258,7 +262,7 @@ class Incremental {
             Index rest = sample;
             Spline refined = spline;
             for (std::size_t k = axes_.size(); k-- > 0;) {
-                const Index m = samples_.shape()[k];
+                const Index m = problem_.samples.shape()[k];
                 const Index at = rest % m;
                 rest /= m;
                 if (axes_[k].has(at)) continue;
@@ -274,74 +278,58 @@ class Incremental {
         return spline;
     }
 
-    const Samples& samples_;
-    const Parameters& parameters_;
-    const FitOptions& options_;
+    const Problem& problem_;
     EpiaSettings settings_;
     std::vector<EpiaAxis> axes_;
+    FitReport report_;
+    Index left_; ///< iterations that are allowed still
     double last_error_ = std::numeric_limits<double>::infinity();
 };
 
-/// A cloud with given parameters: fixed knots, every sample in the group of its nearest control
-/// point [LinZhang2011, section 6].
-FitResult fit_cloud(const Samples& samples, const FitOptions& options) {
-    FitResult result;
-    const AxisPlan plan = plan_axes(samples, options.shape);
-    result.parameters = choose_parameters(samples, options.shape, plan);
-    const std::vector<KnotVector> axes = choose_knots(result.parameters, options.shape, plan);
-    SampleGroups groups = nearest_groups(result.parameters, axes);
-    const DataSide data(axes, samples, result.parameters, std::move(groups));
-    PointSet control = initial_control(samples, result.parameters, axes, options.method);
-    result.report.method = "epia";
+/// A cloud: fixed knots, every sample in the group of its nearest control point [LinZhang2011,
+/// section 6].
+Fitted fit_cloud(const Problem& problem) {
+    if (!problem.options.method.settings.empty())
+        throw InvalidInput(fmt::format("epia: setting {} is for sequences and grids, a cloud's "
+                                       "groups and knots are fixed",
+                                       problem.options.method.settings.begin()->first));
+    const std::vector<KnotVector> axes = fixed_knots(problem);
+    const DataSide data(axes, problem.samples, problem.parameters,
+                        nearest_groups(problem.parameters, axes));
     Pia pia(data);
-    run(
-        pia, control, options, axes,
-        [&](const PointSet& at) { return largest_length(data.residual(at)); }, result.report);
-    result.spline = Spline::from_free(axes, control);
-    return result;
+    Course course = iterated(
+        pia, {initial_control(problem.samples, problem.parameters, axes, problem.options.method)},
+        axes, problem.options,
+        [&](const PointSet& at) { return largest_length(data.residual(at)); });
+    return {Spline::from_free(axes, course.control), problem.parameters, std::move(course.report)};
 }
 
 } // namespace
 
-FitResult fit_epia(const Samples& samples, const FitOptions& options) {
-    for (Closure closure : options.shape.closures)
-        if (closure == Closure::closed)
-            throw InvalidInput(
-                "epia: closed axes are not part of the method; fit open, or use another method");
-    if (options.shape.parameters && options.shape.parameters->is_scattered())
-        return fit_cloud(samples, options);
-    if (samples.axis_count() > 2)
+Fitted fit_epia(const Problem& given, std::string_view) {
+    if (given.kind == SampleKind::cloud) return fit_cloud(given);
+    if (given.axes.count() > 2)
         throw InvalidInput("epia: sequences and grids of 2 axes are possible");
-    if (!(options.stop.deviation > 0) && options.shape.control_points.empty())
+    if (!(given.options.stop.deviation > 0) && given.axes.control_points.empty())
         throw InvalidInput("epia: state where to stop: a deviation (--stop-deviation) or a number "
                            "of control points");
     Stopwatch watch;
-    const EpiaSettings settings = settings_from(options, diagonal(samples.points));
-    const Distinct distinct = without_repetitions(samples);
-    std::vector<Index> alone;
-    for (Index i : options.hold.interpolate) {
-        if (i < 0 || i >= samples.size())
-            throw InvalidInput(fmt::format("interpolated sample {}: the samples are 0 to {}", i,
-                                           samples.size() - 1));
-        if (!samples.grid.empty())
-            throw InvalidInput("epia: single samples are interpolated in sequences only");
-        alone.push_back(distinct.place[static_cast<std::size_t>(i)]);
-    }
-    const std::vector<Closure> open(static_cast<std::size_t>(samples.axis_count()), Closure::open);
-    const Parameters parameters =
-        parametrize(distinct.samples, options.shape.parametrization, open);
-    FitReport report;
-    report.method = "epia";
-    report.seconds.emplace_back("parametrize", watch.lap());
-    FitResult result =
-        Incremental(distinct.samples, parameters, options, settings, alone).fit(std::move(report));
-    result.parameters = parametrize(samples, options.shape.parametrization, open);
-    result.report.seconds.emplace_back("solve", watch.lap());
-    if (distinct.samples.size() < samples.size())
-        result.report.notes.push_back(
-            fmt::format("{} identical consecutive samples dropped before the curvature",
-                        samples.size() - distinct.samples.size()));
-    return result;
+    const std::vector<Index> repeated = repetitions(given.samples);
+    const Subset distinct = Subset::without(repeated, given.samples.size());
+    const Problem problem = distinct.of(with_firsts_held(given, repeated));
+    const EpiaSettings settings = settings_from(given.options, given.size);
+    Fitted fitted = Incremental(problem, settings).fit();
+    fitted.parameters = with_repetitions(distinct, problem.parameters, given.samples.size());
+    fitted.report.settings = {{"eta", settings.eta},
+                              {"t_c", settings.t_c},
+                              {"rounds", static_cast<double>(settings.rounds)},
+                              {"smoothing", static_cast<double>(settings.smoothing)},
+                              {"exact", settings.exact ? 1.0 : 0.0}};
+    fitted.report.seconds.emplace_back("solve", watch.lap());
+    if (!repeated.empty())
+        fitted.report.notes.push_back(fmt::format(
+            "{} identical consecutive samples dropped before the curvature", repeated.size()));
+    return fitted;
 }
 
 } // namespace batten

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <batten/problem/options.hpp>
+#include <batten/problem/problem.hpp>
 #include <batten/problem/result.hpp>
 
 namespace batten {
@@ -13,8 +13,7 @@ namespace batten {
 ///
 /// Ends when every sample is within StopRule::deviation (tolerance_met) or, for a cloud or a stated
 /// number of control points that is reached, by the gradient. Settings: eta, t_c, rounds,
-/// smoothing, exact (see methods()). Throws InvalidInput when there is nothing to stop at, or for
-/// closed axes.
-FitResult fit_epia(const Samples& samples, const FitOptions& options);
+/// smoothing, exact (see methods()). Throws InvalidInput when there is nothing to stop at.
+Fitted fit_epia(const Problem& problem, std::string_view method);
 
 } // namespace batten

@@ -1,13 +1,19 @@
 #include <batten/drivers/pia_driver.hpp>
 
+#include <batten/basis/place_knots.hpp>
+#include <batten/core/grid_index.hpp>
 #include <batten/core/stopwatch.hpp>
-#include <batten/drivers/least_squares.hpp>
+#include <batten/drivers/iteration.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/iterate/pia.hpp>
+#include <batten/problem/initial.hpp>
 #include <batten/problem/plan.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
+#include <numeric>
 
 namespace batten {
 
@@ -24,24 +30,21 @@ struct Setting {
 /// Accumulated chords along an axis, averaged over the rows of a grid, not normalised: eq. 1, 12
 /// and 13.
 std::vector<double> accumulated_chords(const Samples& samples, std::size_t axis) {
-    const std::vector<Index> shape = samples.shape();
-    const Index count = shape[axis];
-    Index inner = 1;
-    for (std::size_t k = axis + 1; k < shape.size(); ++k) inner *= shape[k];
-    const Index rows = samples.size() / count;
+    const GridIndex grid(samples.shape());
+    const Index count = grid.length(axis);
+    const double rows = static_cast<double>(grid.size() / count);
     std::vector<double> t(static_cast<std::size_t>(count));
-    for (Index j = 1; j < count; ++j) {
-        double sum = 0;
-        for (Index row = 0; row < rows; ++row) {
-            const Index at = row / inner * count * inner + row % inner + j * inner;
-            sum += distance(samples.points[at], samples.points[at - inner]);
-        }
-        t[static_cast<std::size_t>(j)] =
-            t[static_cast<std::size_t>(j - 1)] + sum / static_cast<double>(rows);
-        if (!(sum > 0))
+    grid.for_each_strand(axis, [&](const GridIndex::Strand& row) {
+        for (Index j = 1; j < count; ++j)
+            t[static_cast<std::size_t>(j)] +=
+                distance(samples.points[row[j]], samples.points[row[j - 1]]);
+    });
+    for (std::size_t j = 1; j < t.size(); ++j) {
+        if (!(t[j] > 0))
             throw InvalidInput(fmt::format(
                 "axis {}: samples {} and {} are identical; PIA needs distinct neighbours", axis,
                 j - 1, j));
+        t[j] = t[j - 1] + t[j] / rows;
     }
     return t;
 }
@@ -65,34 +68,77 @@ Setting setting_of_2004(const Samples& samples) {
     return setting;
 }
 
-Setting square_setting(const Samples& samples, const FitOptions& options) {
-    Setting setting;
-    const AxisPlan plan = plan_axes(samples, options.shape);
-    setting.parameters = choose_parameters(samples, options.shape, plan);
-    if (setting.parameters.is_scattered())
-        throw InvalidInput(
-            "pia: samples in order or a grid are needed, not a cloud; use epia or lspia");
-    setting.axes = choose_knots(setting.parameters, options.shape, plan);
-    // as many control points as samples: knots by averaging, where eq. 9.69 would leave the
-    // collocation matrix near-singular
-    for (std::size_t axis = 0; axis < setting.axes.size(); ++axis)
-        if (options.shape.knots.empty() && options.shape.placement == KnotPlacement::data &&
-            !setting.axes[axis].closed() &&
-            setting.axes[axis].free_count() ==
-                static_cast<Index>(setting.parameters.axes[axis].size()))
-            setting.axes[axis] = averaged_knots(setting.parameters.axes[axis], plan.degree[axis]);
+/// As many control points as samples want knots of their own, where eq. 9.69 would leave the
+/// collocation matrix near-singular.
+KnotVector interpolating(const KnotVector& chosen, const std::vector<double>& parameters) {
+    return chosen.closed() ? knots_at_parameters(parameters, chosen.degree())
+                           : averaged_knots(parameters, chosen.degree());
+}
+
+/// The sample that each control point of a closed axis follows: in the same order round, from the
+/// one that leaves samples nearest to the middles of the B-splines.
+std::vector<Index> samples_round(const KnotVector& axis, const std::vector<double>& parameters) {
+    const auto n = static_cast<Index>(parameters.size());
+    const int p = axis.degree();
+    const auto apart = [&](Index i, Index j) { // B-spline i and sample j
+        double middle = 0;
+        for (int k = 1; k <= p; ++k) middle += axis[i + k] / p;
+        const double turns = (middle - parameters[static_cast<std::size_t>(j)]) / axis.length();
+        return std::abs(turns - std::round(turns));
+    };
+    Index nearest = 0;
+    for (Index j = 1; j < n; ++j)
+        if (apart(0, j) < apart(0, nearest)) nearest = j;
+    Index best = nearest;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (Index first = nearest - p; first <= nearest + p; ++first) {
+        double sum = 0;
+        for (Index i = 0; i < n; ++i) sum += apart(i, (i + first + n) % n);
+        if (sum < smallest) {
+            smallest = sum;
+            best = first;
+        }
+    }
+    std::vector<Index> own;
+    for (Index i = 0; i < n; ++i) own.push_back((i + best + n) % n);
+    return own;
+}
+
+std::vector<Index> in_order(Index count) {
+    std::vector<Index> own(static_cast<std::size_t>(count));
+    std::iota(own.begin(), own.end(), Index{0});
+    return own;
+}
+
+/// Whether nothing is said of the space, so that it is the paper's own.
+bool is_setting_of_2004(const Problem& problem) {
+    const ShapeOptions& shape = problem.options.shape;
+    const auto cubic = [](int degree) { return degree == 3; };
+    const auto open = [](Closure closure) { return closure == Closure::open; };
+    return !problem.sized() && !shape.parameters && !shape.parametrization && !shape.placement &&
+           std::ranges::all_of(problem.axes.degree, cubic) &&
+           std::ranges::all_of(problem.axes.closures, open);
+}
+
+/// As many control points as samples: knots by averaging, where eq. 9.69 would leave the
+/// collocation matrix near-singular, unless a rule or knots are stated.
+Setting square_setting(Problem problem) {
+    if (!problem.sized()) problem.axes.control_points = problem.samples.shape();
+    Setting setting{problem.parameters, fixed_knots(problem), {}};
+    const ShapeOptions& shape = problem.options.shape;
     for (std::size_t axis = 0; axis < setting.axes.size(); ++axis) {
-        const Index n = setting.axes[axis].free_count();
-        const auto m = static_cast<Index>(setting.parameters.axes[axis].size());
-        if (n != m)
-            throw InvalidInput(fmt::format(
-                "axis {}: pia needs as many control points as samples, got {} and {}", axis, n, m));
-        if (const auto gap = undetermined(setting.axes[axis], setting.parameters.axes[axis]))
+        KnotVector& knots = setting.axes[axis];
+        const std::vector<double>& t = setting.parameters.axes[axis];
+        const auto m = static_cast<Index>(t.size());
+        if (knots.free_count() != m)
+            throw InvalidInput(
+                fmt::format("axis {}: pia needs as many control points as samples, got {} and {}",
+                            axis, knots.free_count(), m));
+        if (shape.knots.empty() && !shape.placement) knots = interpolating(knots, t);
+        if (const auto gap = undetermined(knots, t))
             throw InvalidInput(
                 fmt::format("axis {}: the collocation matrix is singular: {}", axis, *gap));
-        std::vector<Index> own;
-        for (Index i = 0; i < n; ++i) own.push_back(i);
-        setting.own.push_back(std::move(own));
+        setting.own.push_back(knots.closed() ? samples_round(knots, t) : in_order(m));
     }
     return setting;
 }
@@ -113,33 +159,23 @@ PointSet own_samples(const SampleGroups& groups, const Samples& samples) {
 
 } // namespace
 
-FitResult fit_pia(const Samples& samples, const FitOptions& options) {
-    FitResult result;
+Fitted fit_pia(const Problem& problem, std::string_view) {
     Stopwatch watch;
-    const ShapeOptions& shape = options.shape;
-    if (!options.hold.interpolate.empty())
-        throw InvalidInput("pia interpolates every sample already");
-    const bool stated = !shape.control_points.empty() || !shape.knots.empty();
-    if (!stated && (shape.degree != std::vector<int>{3} ||
-                    shape.closures != std::vector<Closure>{Closure::open}))
-        throw InvalidInput("pia: without stated knots or control points it is cubic and open");
-    Setting setting = stated ? square_setting(samples, options) : setting_of_2004(samples);
-    result.parameters = std::move(setting.parameters);
-    const DataSide data(setting.axes, samples, result.parameters,
+    const Samples& samples = problem.samples;
+    const MethodOptions& method = problem.options.method;
+    const Setting setting =
+        is_setting_of_2004(problem) ? setting_of_2004(samples) : square_setting(problem);
+    const DataSide data(setting.axes, samples, setting.parameters,
                         single_samples(setting, samples.shape()));
-    result.report.method = "pia";
-    result.report.seconds.emplace_back("parametrize", watch.lap());
-    PointSet control =
-        options.method.initial == Initial::data
-            ? own_samples(data.groups(), samples)
-            : initial_control(samples, result.parameters, setting.axes, options.method);
-    Pia pia(data, batten::setting(options.method.settings, "weight", 1), options.method.moving);
-    run(
-        pia, control, options, setting.axes,
-        [&](const PointSet& at) { return largest_length(data.residual(at)); }, result.report);
-    result.report.seconds.emplace_back("solve", watch.lap());
-    result.spline = Spline::from_free(setting.axes, control);
-    return result;
+    PointSet start = method.initial == Initial::data
+                         ? own_samples(data.groups(), samples)
+                         : initial_control(samples, setting.parameters, setting.axes, method);
+    Pia pia(data, batten::setting(method_entry("pia"), method.settings, "weight"), method.moving);
+    Course course = iterated(pia, {std::move(start)}, setting.axes, problem.options,
+                             [&](const PointSet& at) { return largest_length(data.residual(at)); });
+    course.report.seconds.emplace_back("solve", watch.lap());
+    return {Spline::from_free(setting.axes, course.control), setting.parameters,
+            std::move(course.report)};
 }
 
 } // namespace batten

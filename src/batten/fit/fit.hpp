@@ -5,12 +5,13 @@
 
 namespace batten {
 
-/// Fits a B-spline with a stated number of control points (or stated knots) to the samples by least
-/// squares.
+/// Fits a B-spline curve, surface or volume to a sequence, grid or cloud: with as few control
+/// points as hold a tolerance (a thousandth of the samples' diagonal where nothing is stated), or
+/// of a stated size or knots by least squares, or by the method that the options name.
 ///
-/// A sequence gives a curve, a grid a surface or volume. Throws InvalidInput for samples and
-/// options that break a rule or, with the direct solver, leave control points undetermined;
-/// Cancelled when asked to stop.
+/// A stated goal that is not reached is no error: FitReport::goals_met() tells. Throws InvalidInput
+/// for samples and options that break a rule or do not go together (problem_of, check_column) or,
+/// with the direct solver, leave control points undetermined; Cancelled when asked to stop.
 FitResult fit(const Samples& samples, const FitOptions& options = {});
 
 } // namespace batten

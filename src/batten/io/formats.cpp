@@ -19,6 +19,8 @@ struct PointFormat {
     std::string_view extension;
     NumberArray (*parse)(const std::filesystem::path&, std::string_view);
     std::string (*format)(const Points&, const std::vector<Index>& grid);
+    /// How its points follow each other where no grid is stated.
+    Order order = Order::along_curve;
 };
 
 std::string comma_text(const Points& points, const std::vector<Index>&) {
@@ -29,11 +31,11 @@ std::string blank_text(const Points& points, const std::vector<Index>&) {
 }
 
 constexpr PointFormat point_formats[] = {
-    {".csv", parse_text, comma_text}, {".txt", parse_text, blank_text},
-    {".xyz", parse_text, blank_text}, {".dat", parse_text, blank_text},
-    {".npy", parse_npy, format_npy},  {".ply", parse_ply, {}},
-    {".obj", parse_obj, {}},          {".stl", parse_stl, {}},
-    {".las", parse_las, {}},
+    {".csv", parse_text, comma_text},       {".txt", parse_text, blank_text},
+    {".xyz", parse_text, blank_text},       {".dat", parse_text, blank_text},
+    {".npy", parse_npy, format_npy},        {".ply", parse_ply, {}, Order::none},
+    {".obj", parse_obj, {}, Order::none},   {".stl", parse_stl, {}, Order::none},
+    {".las", parse_las, {}, Order::ground},
 };
 
 std::vector<SplineFormat>& registry() {
@@ -68,6 +70,9 @@ const PointFormat& point_format(const std::filesystem::path& path) {
         fmt::format("{}: {}", path.string(), unknown_name("extension of points", wanted, known)));
 }
 
+/// Formats that are known once a library of their own has been linked and asked to.
+constexpr std::string_view cad_extensions[] = {".step", ".stp", ".igs", ".iges"};
+
 const SplineFormat& spline_format(const std::filesystem::path& path) {
     const std::string wanted = path == "-" ? ".json" : extension(path);
     std::vector<std::string_view> known;
@@ -75,6 +80,10 @@ const SplineFormat& spline_format(const std::filesystem::path& path) {
         if (format.extension == wanted) return format;
         known.push_back(format.extension);
     }
+    if (std::ranges::find(cad_extensions, wanted) != std::end(cad_extensions))
+        throw InvalidInput(fmt::format("{}: {} files need batten::cad: link it and call "
+                                       "batten::cad::register_formats() first",
+                                       path.string(), wanted));
     throw InvalidInput(fmt::format("{}: unknown extension '{}'; known: {}", path.string(), wanted,
                                    fmt::join(known, ", ")));
 }
@@ -122,6 +131,7 @@ Samples read_points(const std::filesystem::path& path, const ReadOptions& option
     NumberArray array = read_numbers(path);
     Samples samples = options.heights ? heights_from(std::move(array), options.spacing, path)
                                       : points_from(std::move(array), options.grid, path);
+    if (samples.grid.empty()) samples.order = point_format(path).order;
     check(samples);
     return samples;
 }

@@ -1,5 +1,6 @@
 #include <batten/iterate/accelerated.hpp>
 
+#include <batten/iterate/methods.hpp>
 #include <batten/solve/extreme_eigenvalues.hpp>
 
 #include <algorithm>
@@ -25,6 +26,7 @@ Chebyshev::Chebyshev(const NormalSystem& system, double eigenvalue_tolerance)
     : system_(system), eigenvalue_tolerance_(eigenvalue_tolerance) {}
 
 void Chebyshev::start(const PointSet&) {
+    check_setting("chebyshev", "eigenvalue_tolerance", eigenvalue_tolerance_);
     const ExtremeEigenvalues e = widened(system_, eigenvalue_tolerance_);
     centre_ = (e.largest + e.smallest) / 2;
     radius_ = (e.largest - e.smallest) / 2;
@@ -58,6 +60,7 @@ Nesterov::Nesterov(const NormalSystem& system, double eigenvalue_tolerance)
     : system_(system), eigenvalue_tolerance_(eigenvalue_tolerance) {}
 
 void Nesterov::start(const PointSet&) {
+    check_setting("nesterov", "eigenvalue_tolerance", eigenvalue_tolerance_);
     const ExtremeEigenvalues e = widened(system_, eigenvalue_tolerance_);
     step_ = 1 / e.largest;
     const double root = std::sqrt(e.largest / e.smallest);
@@ -84,6 +87,7 @@ BarzilaiBorwein::BarzilaiBorwein(const NormalSystem& system, int memory)
     : system_(system), memory_(memory) {}
 
 void BarzilaiBorwein::start(const PointSet&) {
+    check_setting("barzilai-borwein", "memory", memory_);
     image_ = PointSet(system_.size(), system_.dim());
     moves_image_ = image_;
     energy_ = 0;

@@ -11,7 +11,8 @@ namespace batten {
 /// [GolubVarga1961].
 class Chebyshev : public Method {
   public:
-    explicit Chebyshev(const NormalSystem& system, double eigenvalue_tolerance = 1e-2);
+    explicit Chebyshev(const NormalSystem& system,
+                       double eigenvalue_tolerance = default_eigenvalue_tolerance);
     std::string_view name() const override { return "chebyshev"; }
     void start(const PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
@@ -37,7 +38,8 @@ class Chebyshev : public Method {
 /// LSPIA with Nesterov's momentum for strongly convex functions [Nesterov2004, section 2.2].
 class Nesterov : public Method {
   public:
-    explicit Nesterov(const NormalSystem& system, double eigenvalue_tolerance = 1e-2);
+    explicit Nesterov(const NormalSystem& system,
+                      double eigenvalue_tolerance = default_eigenvalue_tolerance);
     std::string_view name() const override { return "nesterov"; }
     void start(const PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;

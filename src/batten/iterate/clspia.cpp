@@ -1,5 +1,6 @@
 #include <batten/iterate/clspia.hpp>
 
+#include <batten/iterate/methods.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/solve/schur.hpp>
 
@@ -8,22 +9,34 @@
 
 namespace batten {
 
-Clspia::Clspia(const NormalSystem& system, Constraints constraints, ClspiaSettings settings)
+Clspia::Clspia(const NormalSystem& system, Constraints constraints, double exactness,
+               ClspiaSettings settings)
     : system_(system),
       constraints_(std::move(constraints)),
-      settings_(settings),
+      exactness_(exactness),
+      given_(settings),
       multipliers_(constraints_.size(), system.dim()) {
+    if (!std::isfinite(exactness) || exactness < 0)
+        throw InvalidInput(fmt::format("clspia: exactness {} must be 0 or more", exactness));
     multipliers_.fill(1); // lambda^0 of ones, section 3.2
 }
 
-void Clspia::start(const PointSet&) {
-    const ExtremeEigenvalues gamma = extreme_eigenvalues(system_, settings_.eigenvalue_tolerance);
-    if (settings_.mu_1 == 0) settings_.mu_1 = (gamma.smallest + gamma.largest) / 2;
-    if (!(settings_.mu_1 > gamma.largest / 2))
-        throw InvalidInput(
-            fmt::format("clspia: mu_1 = {} is outside the convergence region mu_1 > {}",
-                        settings_.mu_1, gamma.largest / 2));
-    if (constraints_.empty()) return;
+void Clspia::start(const PointSet& control) {
+    check_setting("clspia", "eigenvalue_tolerance", given_.eigenvalue_tolerance);
+    if (given_.inner_tolerance) check_setting("clspia", "inner_tolerance", *given_.inner_tolerance);
+    choose_inner_step();
+    if (!constraints_.empty()) choose_outer_step();
+    reference_ =
+        std::hypot(frobenius_norm(system_.gradient(control)), frobenius_norm(gap(control)));
+}
+
+void Clspia::choose_inner_step() {
+    const ExtremeEigenvalues gamma = extreme_eigenvalues(system_, given_.eigenvalue_tolerance);
+    mu_1_ = given_.mu_1.value_or((gamma.smallest + gamma.largest) / 2);
+    check_setting("clspia", "mu_1", mu_1_, {.low = gamma.largest / 2}, "its region of convergence");
+}
+
+void Clspia::choose_outer_step() {
     std::unique_ptr<Factorization> normal;
     try {
         normal = factorize(system_);
@@ -33,18 +46,21 @@ void Clspia::start(const PointSet&) {
     }
     const ExtremeEigenvalues beta =
         SchurComplement(*normal, constraints_, system_.size()).eigenvalues();
-    if (settings_.mu == 0) settings_.mu = 2 / (beta.smallest + beta.largest);
-    if (!(settings_.mu > 0 && settings_.mu < 2 / beta.largest))
-        throw InvalidInput(
-            fmt::format("clspia: mu = {} is outside the convergence region 0 < mu < {}",
-                        settings_.mu, 2 / beta.largest));
+    mu_ = given_.mu.value_or(2 / (beta.smallest + beta.largest));
+    check_setting("clspia", "mu", mu_, {.low = 0, .high = 2 / beta.largest},
+                  "its region of convergence");
+}
+
+PointSet Clspia::gap(const PointSet& control) const {
+    PointSet result = constraints_.apply(control);
+    add_scaled(result, -1.0, constraints_.values());
+    return result;
 }
 
 const PointSet& Clspia::propose(const PointSet& control) {
-    gap_ = constraints_.apply(control);
-    add_scaled(gap_, -1.0, constraints_.values());
+    gap_ = gap(control);
     if (inner_done_) { // eq. 10, at the last control points of the inner loop
-        add_scaled(multipliers_, settings_.mu, gap_);
+        add_scaled(multipliers_, mu_, gap_);
         inner_done_ = false;
         ++outer_;
     }
@@ -52,20 +68,19 @@ const PointSet& Clspia::propose(const PointSet& control) {
     add_scaled(moves_, -1.0, constraints_.apply_transposed(multipliers_, system_.size()));
     error_ = inner_product(gap_, gap_);
     norm_ = std::sqrt(inner_product(moves_, moves_) + error_);
-    for (double& x : moves_.values()) x /= settings_.mu_1; // eq. 8
+    for (double& x : moves_.values()) x /= mu_1_; // eq. 8
     return moves_;
 }
 
 void Clspia::accept(const PointSet& moves) {
     ++inner_;
-    const double enough =
-        settings_.inner_tolerance > 0 ? settings_.inner_tolerance : 1e-2 * largest_length(gap_);
+    const double enough = given_.inner_tolerance.value_or(1e-2 * largest_length(gap_));
     inner_done_ = largest_length(moves) <= enough;
 }
 
 Settings Clspia::settings() const {
-    return {{"mu", settings_.mu},
-            {"mu_1", settings_.mu_1},
+    return {{"mu", mu_},
+            {"mu_1", mu_1_},
             {"inner_iterations", static_cast<double>(inner_)},
             {"outer_iterations", static_cast<double>(outer_)}};
 }

@@ -1,29 +1,36 @@
 #pragma once
 
 #include <batten/iterate/method.hpp>
+#include <batten/solve/extreme_eigenvalues.hpp>
 #include <batten/system/constraints.hpp>
 #include <batten/system/normal_system.hpp>
 
+#include <optional>
+
 namespace batten {
+
+/// The numbers of CLSPIA; an absent one is chosen.
+struct ClspiaSettings {
+    /// Outer step, else 2 / (beta_min + beta_max), beta of C (A^T A)^{-1} C^T.
+    std::optional<double> mu{};
+    /// The inner step is 1 / mu_1; else (gamma_min + gamma_max) / 2, gamma of A^T A.
+    std::optional<double> mu_1{};
+    /// The inner loop ends when max |Delta| is at most this; else a hundredth of the largest
+    /// constraint error at hand, so that it tightens as the outer loop converges.
+    std::optional<double> inner_tolerance{};
+    double eigenvalue_tolerance = default_eigenvalue_tolerance;
+};
 
 /// Constrained LSPIA [ChangMaDeng2023, eq. 8 to 10 and Algorithm 2]: LSPIA steps on A^T A P = A^T Q
 /// - C^T lambda until they are short, then lambda moves by mu times what the constraints lack
 /// (Uzawa).
-struct ClspiaSettings {
-    double mu = 0; ///< outer step; 0 takes 2 / (beta_min + beta_max), beta of C (A^T A)^{-1} C^T
-    double mu_1 =
-        0; ///< the inner step is 1 / mu_1; 0 takes (gamma_min + gamma_max) / 2, gamma of A^T A
-    /// The inner loop ends when max |Delta| is at most this; 0: a hundredth of the largest
-    /// constraint error at hand, so that it tightens as the outer loop converges.
-    double inner_tolerance = 0;
-    double eigenvalue_tolerance = 1e-2;
-};
-
 class Clspia : public Method {
   public:
     /// `system` without the interpolated samples; `constraints` relative to its centre,
-    /// independent.
-    Clspia(const NormalSystem& system, Constraints constraints, ClspiaSettings settings = {});
+    /// independent, and met when none lacks more than `exactness` (a length).
+    /// Throws InvalidInput when `exactness` is negative or not finite.
+    Clspia(const NormalSystem& system, Constraints constraints, double exactness,
+           ClspiaSettings settings = {});
 
     std::string_view name() const override { return "clspia"; }
     /// Throws InvalidInput when a step factor is outside its region of convergence or the
@@ -33,16 +40,28 @@ class Clspia : public Method {
     void accept(const PointSet& moves) override;
     /// Length of (A^T(Q - AP) - C^T lambda, C P - d).
     double gradient_norm() const override { return norm_; }
+    /// That of (A^T(Q - AP), C P - d) at P^0: how long the pull of lambda^0 is says nothing of the
+    /// data.
+    double reference_norm() const override { return reference_; }
     Settings settings() const override;
     double constraint_error() const override { return error_; }
+    bool constraints_hold() const override { return largest_length(gap_) <= exactness_; }
 
   private:
+    void choose_inner_step();
+    void choose_outer_step();
+    PointSet gap(const PointSet& control) const;
+
     const NormalSystem& system_;
     Constraints constraints_;
-    ClspiaSettings settings_;
+    double exactness_;
+    ClspiaSettings given_;
+    double mu_ = 0;
+    double mu_1_ = 0;
     PointSet multipliers_;
     PointSet moves_;
     PointSet gap_; // C P - d
+    double reference_ = 0;
     double norm_ = 0;
     double error_ = 0;
     Index inner_ = 0;

@@ -67,7 +67,7 @@ TEST(Iterate, rates_are_those_of_the_theory) {
     const double least = sigma2(0);
     const double most = sigma2(49);
     PointSet control(50, 2);
-    Lspia lspia(*rose.system, 0, 1e-12);
+    Lspia lspia(*rose.system, {}, 1e-12);
     const Summary slow = iterate(lspia, control, {});
     const double rate = (most - least) / (most + least); // of the best step
     EXPECT_NEAR(lspia.predicted_rate(), rate, 1e-10);
@@ -89,17 +89,17 @@ TEST(Iterate, weights_outside_the_convergence_region_are_refused) {
     const NormalSystem* system = rose.system.get();
     PointSet control(50, 2);
     const auto refusal = [&](std::string_view name, Settings settings) {
-        const auto method = make_method(name, *system, settings);
-        return message_of<InvalidInput>([&] { method->start(control); });
+        return message_of<InvalidInput>(
+            [&] { make_method(name, *system, settings)->start(control); });
     };
     EXPECT_EQ(refusal("mlspia", {{"omega", 2.5}}),
-              "mlspia: omega = 2.5 is outside the convergence region 0 < omega < 2");
+              "setting omega = 2.5 of method mlspia is outside 0 < omega < 2");
     EXPECT_EQ(refusal("mlspia", {{"nu", -1}}),
-              "mlspia: nu = -1 is outside the convergence region nu > 0");
-    EXPECT_TRUE(refusal("mlspia", {{"gamma", 5}})
-                    .starts_with("mlspia: gamma = 5 is outside the convergence region "));
+              "setting nu = -1 of method mlspia is outside 0 < nu");
+    EXPECT_TRUE(refusal("mlspia", {{"gamma", 5}, {"nu", 1}})
+                    .starts_with("setting gamma = 5 of method mlspia is outside "));
     EXPECT_TRUE(refusal("lspia", {{"mu", 10}})
-                    .starts_with("lspia: mu = 10 is outside the convergence region 0 < mu < "));
+                    .starts_with("setting mu = 10 of method lspia is outside 0 < mu < "));
     EXPECT_EQ(message_of<InvalidInput>([&] {
                   make_method("mlspia", *system, {{"omgea", 1}});
               }),
@@ -111,14 +111,14 @@ TEST(Iterate, weights_outside_the_convergence_region_are_refused) {
 /// Spectral radius of MLSPIA's iteration [HuangWang2020, eq. 1 to 3] as a dense matrix on the error
 /// e^k, the last moves D^{k-1} and the last gradients d^{k-1}: d^k = nu A^T A e^k, D^k = (1 -
 /// omega) D^{k-1} + gamma d^k + (omega - gamma) d^{k-1}, e^{k+1} = e^k - D^k.
-double mlspia_radius(const reference::Matrix& a, const MlspiaWeights& w) {
+double mlspia_radius(const reference::Matrix& a, double omega, double gamma, double nu) {
     const Index n = a.cols();
-    const Eigen::MatrixXd g = w.nu * (a.transpose() * a).cast<double>();
+    const Eigen::MatrixXd g = nu * (a.transpose() * a).cast<double>();
     const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
     Eigen::MatrixXd step = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-    step.block(n, 0, n, n) = w.gamma * g;
-    step.block(n, n, n, n) = (1 - w.omega) * one;
-    step.block(n, 2 * n, n, n) = (w.omega - w.gamma) * one;
+    step.block(n, 0, n, n) = gamma * g;
+    step.block(n, n, n, n) = (1 - omega) * one;
+    step.block(n, 2 * n, n, n) = (omega - gamma) * one;
     step.topRows(n) = -step.middleRows(n, n);
     step.topLeftCorner(n, n) += one;
     step.block(2 * n, 0, n, n) = g;
@@ -135,15 +135,15 @@ TEST(Iterate, gamma_inside_the_region_converges_and_outside_would_not) {
     const double high = omega / 2 - (omega - 2) / (sigma2 * nu);
     PointSet control(30, 2);
     Mlspia inside(*rose.system, {omega, 0.98 * high, nu}, 1e-12);
-    EXPECT_LT(mlspia_radius(a, {omega, 0.98 * high, nu}), 1);
+    EXPECT_LT(mlspia_radius(a, omega, 0.98 * high, nu), 1);
     EXPECT_EQ(
         iterate(inside, control, {.max_iterations = 200000, .relative_gradient = 1e-8}).termination,
         Termination::converged);
     EXPECT_LT(rose.error(control), 1e-6);
     Mlspia outside(*rose.system, {omega, 1.02 * high, nu}, 1e-12);
-    EXPECT_GT(mlspia_radius(a, {omega, 1.02 * high, nu}), 1);
+    EXPECT_GT(mlspia_radius(a, omega, 1.02 * high, nu), 1);
     EXPECT_TRUE(
-        message_of<InvalidInput>([&] { outside.start(control); }).starts_with("mlspia: gamma = "));
+        message_of<InvalidInput>([&] { outside.start(control); }).starts_with("setting gamma = "));
 }
 
 TEST(Iterate, mlspia_converges_from_any_lambda) {

@@ -3,15 +3,18 @@
 #include <batten/iterate/method.hpp>
 #include <batten/system/normal_system.hpp>
 
+#include <optional>
+
 namespace batten {
 
 /// Least-squares progressive-iterative approximation, Delta = mu A^T (Q - A P) [DengLin2014, eq. 5
 /// and 18].
 class Lspia : public Method {
   public:
-    /// `mu` 0 takes the best one, 2 / (sigma_1^2 + sigma_r^2), from eigenvalues of that relative
+    /// Without `mu` the best one, 2 / (sigma_1^2 + sigma_r^2), from eigenvalues of that relative
     /// accuracy.
-    explicit Lspia(const NormalSystem& system, double mu = 0, double eigenvalue_tolerance = 1e-2);
+    explicit Lspia(const NormalSystem& system, std::optional<double> mu = {},
+                   double eigenvalue_tolerance = default_eigenvalue_tolerance);
 
     std::string_view name() const override { return "lspia"; }
     /// Throws InvalidInput unless 0 < mu < 2 / sigma_1^2.
@@ -25,7 +28,8 @@ class Lspia : public Method {
 
   private:
     const NormalSystem& system_;
-    double mu_;
+    std::optional<double> given_mu_;
+    double mu_ = 0;
     double eigenvalue_tolerance_;
     double rate_ = 0;
     std::string note_;

@@ -8,8 +8,11 @@
 
 namespace batten {
 
-/// Named numbers of a method: the weights that it was given or chose.
+/// Named numbers of a method: the weights that it was given or chose; what is absent is chosen.
 using Settings = std::map<std::string, double>;
+
+/// Relative accuracy of the extreme eigenvalues that step factors are chosen by.
+inline constexpr double default_eigenvalue_tolerance = 1e-2;
 
 /// One geometric iteration P <- P + M(W(Q - A P)): proposes moves of the control points (N x dim).
 ///
@@ -32,9 +35,14 @@ class Method {
     /// The norm that the stop rule tests, at the control points of the last propose():
     /// the Frobenius norm of A^T(Q - AP), or of the method's own W(Q - AP) before step factors.
     virtual double gradient_norm() const = 0;
+    /// What StopRule::relative_gradient is relative to, asked once after the first propose(): the
+    /// gradient's own size at P^0, free of whatever else the norm holds.
+    virtual double reference_norm() const { return gradient_norm(); }
     /// Sum of squared lengths of what the constraints lack at the last propose(); 0 without
     /// constraints.
     virtual double constraint_error() const { return 0; }
+    /// Whether the constraints are met closely enough at the last propose() to end there.
+    virtual bool constraints_hold() const { return true; }
     /// The weights in use, known after start().
     virtual Settings settings() const { return {}; }
     /// What the user should know of the problem, found at start(): a sentence, or nothing.

@@ -7,81 +7,134 @@
 #include <batten/iterate/mlspia.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 
 namespace batten {
 
 namespace {
 
-constexpr MethodSetting eigenvalue_setting{
-    "eigenvalue_tolerance", "relative accuracy of the extreme eigenvalues (default 1e-2)"};
+constexpr auto open = RangeEnd::open;
+constexpr auto closed = RangeEnd::closed;
+constexpr double largest_count = 1e6;
+constexpr SettingRange any_number{};
+constexpr SettingRange positive{.low = 0};
+constexpr SettingRange switched{0, 1, closed, closed, Numbers::whole};
+constexpr SettingRange counts{0, largest_count, closed, closed, Numbers::whole};
+constexpr SettingRange counts_from_one{1, largest_count, closed, closed, Numbers::whole};
 
-const std::vector<MethodEntry>& table() {
-    static const std::vector<MethodEntry> all = {
-        {"auto", "the fastest that answers the question", "", {}},
-        {"direct", "banded Cholesky of the normal equations, axis by axis", "", {}},
-        {"lspia",
-         "least-squares PIA",
-         "Deng, Lin 2014",
-         {{"mu", "step factor (default 2 / (sigma_1^2 + sigma_r^2))"}, eigenvalue_setting}},
-        {"mlspia",
-         "least-squares PIA with memory",
-         "Huang, Wang 2020",
-         {{"omega", "weight omega (default eq. 27, 37)"},
-          {"gamma", "weight gamma (default eq. 27, 37)"},
-          {"nu", "weight nu (default eq. 27, 37)"},
-          eigenvalue_setting}},
-        {"clspia",
-         "LSPIA with Lagrange multipliers: exact at the interpolated samples",
-         "Chang, Ma, Deng 2023",
-         {{"mu", "outer step (default 2 / (beta_min + beta_max))"},
-          {"mu_1", "inverse inner step (default (gamma_min + gamma_max) / 2)"},
-          {"inner_tolerance", "max |Delta| that ends the inner loop (default: a hundredth of the "
-                              "constraint error at hand)"},
-          eigenvalue_setting}},
-        {"pia",
-         "progressive-iterative approximation: interpolates every sample",
-         "Lin, Wang, Dong 2004",
-         {{"weight", "factor of every move (default 1)"}}},
-        {"epia",
-         "PIA with groups of samples, knots added where the error is",
-         "Lin, Zhang 2011",
-         {{"eta", "validation threshold, eq. 47 (default 0.6)"},
-          {"t_c", "e_c below which a knot is inserted (default 0.9 of the stop deviation, else "
-                  "2.5e-3 of the data's size)"},
-          {"rounds", "most rounds of the validation check (default 2)"},
-          {"smoothing", "widest Gaussian of the curvature, in samples (default 4)"},
-          {"exact", "1: keep the refined knots instead of regenerating them by eq. 38"}}},
-        {"cg",
-         "conjugate gradients, preconditioned axis by axis on clouds, by the diagonal elsewhere",
-         "Hestenes, Stiefel 1952",
-         {{"plain", "1: without the preconditioner"},
-          {"diagonal", "1: by the diagonal on clouds, too"}}},
-        {"chebyshev", "LSPIA with Chebyshev steps", "Golub, Varga 1961", {eigenvalue_setting}},
-        {"nesterov", "LSPIA with Nesterov's momentum", "Nesterov 2004", {eigenvalue_setting}},
-        {"barzilai-borwein",
-         "LSPIA with Barzilai-Borwein steps and a non-monotone search",
-         "Barzilai, Borwein 1988; Grippo, Lampariello, Lucidi 1986",
-         {{"memory", "energies that the search looks back on (default 10)"}}},
-    };
-    return all;
+constexpr MethodSetting eigenvalue_setting{
+    "eigenvalue_tolerance", "relative accuracy of the extreme eigenvalues of A^T A",
+    default_eigenvalue_tolerance, SettingRange{0, 1, open, open}};
+
+constexpr MethodSetting eigenvalues_only[]{eigenvalue_setting};
+
+constexpr MethodSetting lspia_settings[]{
+    {"mu", "step factor", "2 / (sigma_1^2 + sigma_r^2)", positive, "Deng, Lin 2014, eq. 18"},
+    eigenvalue_setting,
+};
+
+constexpr MethodSetting mlspia_settings[]{
+    {"omega", "1 - omega of the last move is kept", "eq. 27, for grids eq. 37",
+     SettingRange{0, 2, open, open}, "Huang, Wang 2020, eq. 3 and 11"},
+    {"gamma", "weight of the gradient at hand, the last one's is omega - gamma",
+     "eq. 27, for grids eq. 37", any_number, "Huang, Wang 2020, eq. 3 and 11"},
+    {"nu", "step factor", "eq. 27, for grids eq. 37; less where omega and gamma ask for it",
+     positive, "Huang, Wang 2020, eq. 3 and 11"},
+    eigenvalue_setting,
+};
+
+constexpr MethodSetting clspia_settings[]{
+    {"mu", "outer step: of the multipliers", "2 / (beta_min + beta_max)", positive,
+     "Chang, Ma, Deng 2023, eq. 10"},
+    {"mu_1", "inverse of the inner step: of the control points", "(gamma_min + gamma_max) / 2",
+     positive, "Chang, Ma, Deng 2023, eq. 8"},
+    {"inner_tolerance", "longest move that ends the inner loop",
+     "a hundredth of the largest constraint error at hand", positive,
+     "Chang, Ma, Deng 2023, Algorithm 2"},
+    eigenvalue_setting,
+};
+
+constexpr MethodSetting pia_settings[]{
+    {"weight", "factor of every move", 1.0, SettingRange{0, 2, open, closed}, "Lu 2010"},
+};
+
+constexpr MethodSetting epia_settings[]{
+    {"eta", "validation threshold of a group", 0.6, SettingRange{0, 1, closed, open},
+     "Lin, Zhang 2011, eq. 47"},
+    {"t_c", "longest move e_c below which a knot is inserted",
+     "0.9 of the stop deviation, else 2.5e-3 of the data's size", positive,
+     "Lin, Zhang 2011, Algorithm 1"},
+    {"rounds", "most rounds of the validation check", 2.0, counts, "Lin, Zhang 2011, section 4"},
+    {"smoothing", "widest Gaussian of the curvature, in samples", 4.0, counts,
+     "Lin, Zhang 2011, section 4"},
+    {"exact", "1: keep the refined knots instead of regenerating them", 0.0, switched,
+     "Lin, Zhang 2011, eq. 38"},
+};
+
+constexpr MethodSetting cg_settings[]{
+    {"plain", "1: without the preconditioner", 0.0, switched},
+    {"diagonal", "1: preconditioned by the diagonal on clouds, too", 0.0, switched},
+};
+
+constexpr MethodSetting barzilai_borwein_settings[]{
+    {"memory", "energies that the search looks back on", 10.0, counts_from_one,
+     "Grippo, Lampariello, Lucidi 1986"},
+};
+
+constexpr MethodEntry table[]{
+    {"auto", "the fastest that answers the question", "", {}},
+    {"search", "the fewest control points within a tolerance", "", {}},
+    {"direct", "banded Cholesky of the normal equations, axis by axis", "", {}},
+    {"lspia", "least-squares PIA", "Deng, Lin 2014", lspia_settings},
+    {"mlspia", "least-squares PIA with memory", "Huang, Wang 2020", mlspia_settings},
+    {"clspia", "LSPIA with Lagrange multipliers: exact at the interpolated samples",
+     "Chang, Ma, Deng 2023", clspia_settings},
+    {"pia", "progressive-iterative approximation: interpolates every sample",
+     "Lin, Wang, Dong 2004", pia_settings},
+    {"epia", "PIA with groups of samples, knots added where the error is", "Lin, Zhang 2011",
+     epia_settings},
+    {"cg", "conjugate gradients, preconditioned axis by axis on clouds, by the diagonal elsewhere",
+     "Hestenes, Stiefel 1952", cg_settings},
+    {"chebyshev", "LSPIA with Chebyshev steps", "Golub, Varga 1961", eigenvalues_only},
+    {"nesterov", "LSPIA with Nesterov's momentum", "Nesterov 2004", eigenvalues_only},
+    {"barzilai-borwein", "LSPIA with Barzilai-Borwein steps and a non-monotone search",
+     "Barzilai, Borwein 1988; Grippo, Lampariello, Lucidi 1986", barzilai_borwein_settings},
+};
+
+/// The method's setting of that name, nullptr when it has none.
+const MethodSetting* find(const MethodEntry& entry, std::string_view name) {
+    const auto at = std::ranges::find(entry.settings, name, &MethodSetting::name);
+    return at == entry.settings.end() ? nullptr : &*at;
+}
+
+Preconditioner preconditioner(const MethodEntry& entry, const Settings& settings) {
+    const bool plain = setting(entry, settings, "plain") == 1;
+    const bool diagonal = setting(entry, settings, "diagonal") == 1;
+    if (plain && diagonal)
+        throw InvalidInput("settings plain = 1 and diagonal = 1 of method cg: one of them at most");
+    return plain      ? Preconditioner::none
+           : diagonal ? Preconditioner::diagonal
+                      : Preconditioner::axes;
 }
 
 } // namespace
 
-double setting(const Settings& settings, const std::string& name, double otherwise) {
+std::optional<double> setting(const Settings& settings, const std::string& name) {
     const auto found = settings.find(name);
-    return found == settings.end() ? otherwise : found->second;
+    return found == settings.end() ? std::nullopt : std::optional(found->second);
+}
+
+double setting(const MethodEntry& entry, const Settings& settings, const std::string& name) {
+    return setting(settings, name).value_or(std::get<double>(find(entry, name)->otherwise));
 }
 
 std::span<const MethodEntry> methods() {
-    return table();
+    return table;
 }
 
 const MethodEntry& method_entry(std::string_view name) {
     std::vector<std::string_view> names;
-    for (const MethodEntry& entry : table()) {
+    for (const MethodEntry& entry : table) {
         if (entry.name == name) return entry;
         names.push_back(entry.name);
     }
@@ -95,37 +148,35 @@ void check_settings(const MethodEntry& entry, const Settings& settings) {
         if (names.empty())
             throw InvalidInput(
                 fmt::format("method {} has no settings, got '{}'", entry.name, name));
-        if (std::find(names.begin(), names.end(), name) == names.end())
+        const MethodSetting* known = find(entry, name);
+        if (known == nullptr)
             throw InvalidInput(
                 unknown_name(fmt::format("setting of method {}", entry.name), name, names));
-        if (!std::isfinite(value))
-            throw InvalidInput(fmt::format("setting {} = {} must be finite", name, value));
+        check_setting(entry.name, name, value, known->range);
     }
+}
+
+void check_setting(std::string_view method, std::string_view name, double value) {
+    check_settings(method_entry(method), {{std::string(name), value}});
 }
 
 std::unique_ptr<Method> make_method(std::string_view name, const NormalSystem& system,
                                     const Settings& settings) {
-    check_settings(method_entry(name), settings);
-    const double accuracy = setting(settings, "eigenvalue_tolerance", 1e-2);
-    if (name == "lspia")
-        return std::make_unique<Lspia>(system, setting(settings, "mu", 0), accuracy);
-    if (name == "mlspia") {
-        const MlspiaWeights weights{setting(settings, "omega", 0), setting(settings, "gamma", 0),
-                                    setting(settings, "nu", 0)};
-        return std::make_unique<Mlspia>(system, weights, accuracy);
-    }
-    if (name == "cg") {
-        const bool plain = setting(settings, "plain", 0) != 0;
-        const bool diagonal = setting(settings, "diagonal", 0) != 0;
-        return std::make_unique<ConjugateGradients>(system, plain      ? Preconditioner::none
-                                                            : diagonal ? Preconditioner::diagonal
-                                                                       : Preconditioner::axes);
-    }
-    if (name == "chebyshev") return std::make_unique<Chebyshev>(system, accuracy);
-    if (name == "nesterov") return std::make_unique<Nesterov>(system, accuracy);
+    const MethodEntry& entry = method_entry(name);
+    check_settings(entry, settings);
+    const auto given = [&](const char* of) { return setting(settings, of); };
+    const auto number = [&](const char* of) { return setting(entry, settings, of); };
+    const auto accuracy = [&] { return number("eigenvalue_tolerance"); };
+    if (name == "lspia") return std::make_unique<Lspia>(system, given("mu"), accuracy());
+    if (name == "mlspia")
+        return std::make_unique<Mlspia>(
+            system, MlspiaWeights{given("omega"), given("gamma"), given("nu")}, accuracy());
+    if (name == "cg")
+        return std::make_unique<ConjugateGradients>(system, preconditioner(entry, settings));
+    if (name == "chebyshev") return std::make_unique<Chebyshev>(system, accuracy());
+    if (name == "nesterov") return std::make_unique<Nesterov>(system, accuracy());
     if (name == "barzilai-borwein")
-        return std::make_unique<BarzilaiBorwein>(
-            system, static_cast<int>(std::max(1.0, setting(settings, "memory", 10))));
+        return std::make_unique<BarzilaiBorwein>(system, static_cast<int>(number("memory")));
     throw InvalidInput(fmt::format("method {} is no iteration on the normal equations", name));
 }
 

@@ -1,26 +1,21 @@
 #pragma once
 
 #include <batten/iterate/method.hpp>
+#include <batten/iterate/setting.hpp>
 #include <batten/system/normal_system.hpp>
 
 #include <memory>
+#include <optional>
 #include <span>
-#include <vector>
 
 namespace batten {
-
-/// A method's own setting, given as `--set name=value`.
-struct MethodSetting {
-    std::string_view name;
-    std::string_view meaning;
-};
 
 /// What a user can ask for by name.
 struct MethodEntry {
     std::string_view name;
     std::string_view description;
     std::string_view source;
-    std::vector<MethodSetting> settings;
+    std::span<const MethodSetting> settings;
 };
 
 /// Every method of fitting with a fixed number of control points, `auto` and `direct` included.
@@ -29,12 +24,18 @@ std::span<const MethodEntry> methods();
 /// The entry of a method; throws InvalidInput for an unknown name (the nearest is suggested).
 const MethodEntry& method_entry(std::string_view name);
 
-/// Throws InvalidInput when the method has no setting of one of the names, or a value is not
-/// finite.
+/// Throws InvalidInput when the method has no setting of one of the names, or a value is outside
+/// its range.
 void check_settings(const MethodEntry& entry, const Settings& settings);
 
-/// The setting of that name, or `otherwise`.
-double setting(const Settings& settings, const std::string& name, double otherwise);
+/// The same of one setting, for the methods' own constructors.
+void check_setting(std::string_view method, std::string_view name, double value);
+
+/// The setting of that name; nothing when it was not given.
+std::optional<double> setting(const Settings& settings, const std::string& name);
+
+/// The setting of that name; the number of the table when it was not given.
+double setting(const MethodEntry& entry, const Settings& settings, const std::string& name);
 
 /// The iteration `name` on a normal system alone: not `auto` or `direct`, which are no iterations,
 /// nor `pia`, `epia` and `clspia`, which need more than the system.

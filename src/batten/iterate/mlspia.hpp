@@ -1,15 +1,19 @@
 #pragma once
 
 #include <batten/iterate/method.hpp>
+#include <batten/solve/extreme_eigenvalues.hpp>
 #include <batten/system/normal_system.hpp>
+
+#include <optional>
 
 namespace batten {
 
-/// The three weights of MLSPIA; 0 takes the best ones [HuangWang2020, eq. 27; for grids eq. 37].
+/// The three weights of MLSPIA; an absent one is the best [HuangWang2020, eq. 27; for grids eq.
+/// 37], but nu is shorter where the other two lie outside its region of convergence [eq. 11].
 struct MlspiaWeights {
-    double omega = 0;
-    double gamma = 0;
-    double nu = 0;
+    std::optional<double> omega{};
+    std::optional<double> gamma{};
+    std::optional<double> nu{};
 };
 
 /// Least-squares PIA with memory [HuangWang2020, eq. 1 to 3]:
@@ -18,7 +22,7 @@ struct MlspiaWeights {
 class Mlspia : public Method {
   public:
     explicit Mlspia(const NormalSystem& system, MlspiaWeights weights = {},
-                    double eigenvalue_tolerance = 1e-2);
+                    double eigenvalue_tolerance = default_eigenvalue_tolerance);
 
     /// Replaces Delta^0 = omega nu A^T (Q - A P^0) (both kinds of initial control points in
     /// section 6.2) by nu A^T Lambda^0 for a Lambda^0 of the caller's: `moves` (N x dim) is A^T
@@ -43,8 +47,14 @@ class Mlspia : public Method {
     void resume(PointSet last_moves) { last_ = std::move(last_moves); }
 
   private:
+    void choose_weights(const ExtremeEigenvalues& sigma2);
+    double root_modulus(double sigma2) const;
+
     const NormalSystem& system_;
-    MlspiaWeights weights_;
+    MlspiaWeights given_;
+    double omega_ = 0;
+    double gamma_ = 0;
+    double nu_ = 0;
     double eigenvalue_tolerance_;
     double rate_ = 0;
     std::string note_;

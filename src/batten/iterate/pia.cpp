@@ -1,16 +1,19 @@
 #include <batten/iterate/pia.hpp>
 
+#include <batten/iterate/convergence_rate.hpp>
+#include <batten/iterate/methods.hpp>
+
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <random>
 
 namespace batten {
 
-Pia::Pia(const DataSide& data, double weight, std::vector<Index> chosen)
-    : data_(data), weight_(weight) {
+Pia::Pia(const DataSide& data, double weight, std::vector<Index> chosen, Divergence divergence)
+    : data_(data), weight_(weight), divergence_(divergence) {
     const Index controls = data.groups().size();
-    if (!(weight > 0 && weight <= 2))
-        throw InvalidInput(fmt::format("pia: weight {} is outside 0 to 2", weight));
+    check_setting("pia", "weight", weight);
     if (chosen.empty()) return;
     moves_allowed_.assign(static_cast<std::size_t>(controls), false);
     for (Index i : chosen) {
@@ -28,34 +31,57 @@ void Pia::keep_chosen(PointSet& moves) const {
 }
 
 void Pia::start(const PointSet& control) {
-    // power iteration: residuals of zero data are -A x, so the image of x is x - weight W A x
-    constexpr int steps = 60;
+    const VectorOperator wa = [&](const std::vector<double>& in, std::vector<double>& out) {
+        out = std::move(image(PointSet(in, 1)).values());
+    };
+    // moves are images under W: doubled control points move alike
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal;
-    PointSet x(control.size(), control.dim());
-    for (double& value : x.values()) value = normal(random);
-    keep_chosen(x);
-    const PointSet zero(control.size(), control.dim());
-    const PointSet base = data_.groups().means(data_.residual(zero));
-    const auto minus_wa = [&](const PointSet& at) {
-        PointSet image = data_.groups().means(data_.residual(at));
-        add_scaled(image, -1.0, base);
-        keep_chosen(image);
-        return image;
-    };
-    x = minus_wa(
-        minus_wa(x)); // moves lie in the range of W A: what it maps to zero must not be seen
-    for (int k = 0; k < steps; ++k) {
-        const PointSet image = minus_wa(x);
-        PointSet next = x;
-        add_scaled(next, weight_, image);
-        const double last = rate_;
-        rate_ = frobenius_norm(next) / frobenius_norm(x);
-        if (!(rate_ > 0) || std::abs(rate_ - last) < 1e-6 * rate_) break;
-        x = std::move(next);
-        const double length = frobenius_norm(x);
-        for (double& value : x.values()) value /= length;
+    PointSet residual(data_.sample_count(), 1);
+    for (double& value : residual.values()) value = normal(random);
+    PointSet moves = data_.groups().means(residual);
+    keep_chosen(moves);
+    const RateEffort effort = divergence_ == Divergence::allowed
+                                  ? RateEffort{.directions = 24, .restarts = 1}
+                                  : RateEffort{};
+    rate_ = convergence_rate(wa, weight_, std::move(moves.values()), effort);
+    if (divergence_ == Divergence::refused && diverges(control))
+        throw InvalidInput(fmt::format(
+            "pia: the predicted rate is {:.6g}, above 1: the control points would move off without "
+            "bound; other parameters or knots, or a smaller weight, may do",
+            rate_));
+}
+
+PointSet Pia::image(const PointSet& moves) const {
+    PointSet result = data_.groups().means(data_.values(moves));
+    keep_chosen(result);
+    return result;
+}
+
+bool Pia::diverges(const PointSet& control) {
+    constexpr double growth = 1e9;
+    constexpr double faded = 1e-3;
+    constexpr Index most_steps = 30'000;
+    constexpr Index most_numbers = 300'000'000; // computed on the way
+    if (!(rate_ > 1)) return false;
+    PointSet moves = propose(control);
+    const double first = frobenius_norm(moves);
+    const Index steps = std::min(most_steps, most_numbers / (moves.size() * moves.dim()));
+    for (Index k = 0; k < steps; ++k) {
+        add_scaled(moves, -weight_, image(moves));
+        const double now = frobenius_norm(moves);
+        if (!(now <= growth * first)) return true;
+        if (now <= faded * first) return false;
     }
+    return false;
+}
+
+std::string Pia::note() const {
+    constexpr double rounding = 1e-9;
+    if (rate_ <= 1 + rounding) return {};
+    return fmt::format("the predicted rate is {:.6g}, not below 1: the moves may grow before they "
+                       "fade, or not fade",
+                       rate_);
 }
 
 const PointSet& Pia::propose(const PointSet& control) {

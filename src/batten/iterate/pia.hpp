@@ -5,24 +5,34 @@
 
 namespace batten {
 
+/// What to do when the predicted rate is above 1, so that the iteration grows without bound.
+enum class Divergence {
+    refused,
+    allowed, ///< the caller ends the run before it matters
+};
+
 /// Progressive-iterative approximation: every control point moves by the residual of its own sample
-/// [LinWangDong2004, eq. 4 and 5; surfaces eq. 16 and 17], times a factor (weighted PIA), or by the
+/// [LinWangDong2004, eq. 4 and 5; surfaces eq. 16 and 17], times a factor [Lu2010], or by the
 /// mean residual of its group (EPIA [LinZhang2011, eq. 8 to 10; patches eq. 20 to 23]). Which of
 /// them the DataSide's groups decide.
 class Pia : public Method {
   public:
-    /// `chosen`: only these control points move (local PIA); empty: all.
-    explicit Pia(const DataSide& data, double weight = 1, std::vector<Index> chosen = {});
+    /// `chosen`: only these control points move (local PIA); empty: all. Throws InvalidInput for a
+    /// weight outside its range or a control point that is none.
+    explicit Pia(const DataSide& data, double weight = 1, std::vector<Index> chosen = {},
+                 Divergence divergence = Divergence::refused);
 
     std::string_view name() const override { return "pia"; }
+    /// Throws InvalidInput when the iteration would diverge and that is refused.
     void start(const PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet&) override {}
     /// Frobenius norm of W(Q - AP) over the control points that move.
     double gradient_norm() const override { return norm_; }
     Settings settings() const override { return {{"weight", weight_}}; }
-    /// Spectral radius of I - weight W A, by power iteration [LinWangDong2004, section 3].
+    /// Spectral radius of I - weight W A [LinWangDong2004, section 3].
     double predicted_rate() const override { return rate_; }
+    std::string note() const override;
 
     /// Residuals Q - A P of the last propose(), (m x dim): e_d is the longest [LinZhang2011, eq.
     /// 25].
@@ -36,9 +46,15 @@ class Pia : public Method {
 
   private:
     void keep_chosen(PointSet& moves) const;
+    /// W A of moves (N x any dim), over the control points that move.
+    PointSet image(const PointSet& moves) const;
+    /// Whether the moves from `control` really grow, a billionfold: a rate above 1 that is
+    /// rounding, or the passing swell of a matrix that is not normal, does not.
+    bool diverges(const PointSet& control);
 
     const DataSide& data_;
     double weight_;
+    Divergence divergence_;
     std::vector<bool> moves_allowed_; // empty: all
     PointSet residual_;
     PointSet means_;

@@ -9,28 +9,25 @@ namespace batten {
 
 namespace {
 
-/// A grid of samples seen as three axes, those that are missing of one sample each.
+/// A grid of samples and how it bends.
 struct Grid {
     const Points& points;
-    std::array<Index, 3> size{1, 1, 1};
-    std::array<Index, 3> stride{0, 0, 0};
+    GridIndex index;
     std::array<bool, 3> closed{false, false, false};
     std::array<std::vector<double>, 3> bend{}; ///< per axis |second difference| / 4 at each sample
-
-    Index at(const std::array<Index, 3>& i) const {
-        return i[0] * stride[0] + i[1] * stride[1] + i[2] * stride[2];
-    }
 };
 
+constexpr Index block_size = 4096;
+
 void measure_bends(Grid& grid, std::size_t axis) {
-    const Index m = grid.size[axis];
-    const Index stride = grid.stride[axis];
+    const Index m = grid.index.length(axis);
+    const Index stride = grid.index.stride(axis);
     auto& bend = grid.bend[axis];
     bend.assign(static_cast<std::size_t>(grid.points.size()), 0);
     if (m < 3) return;
     const Index dim = grid.points.dim();
-    for_each_chunk((grid.points.size() + 4095) / 4096, [&](Index chunk) {
-        for (Index s = chunk * 4096; s < std::min(grid.points.size(), (chunk + 1) * 4096); ++s) {
+    for_each_block(grid.points.size(), block_size, [&](const Block& block) {
+        for (Index s = block.begin; s < block.end; ++s) {
             Index middle = s / stride % m;
             Index shift = 0; // an end's second difference is its neighbour's
             if (!grid.closed[axis]) shift = middle == 0 ? 1 : middle == m - 1 ? -1 : 0;
@@ -64,12 +61,12 @@ std::vector<double> with_halves(const std::vector<double>& t, bool closed, doubl
 }
 
 /// Excess of the spline's point at the half-grid place `h` (even: a sample's, odd: between two).
-double excess_at(const Grid& grid, const std::array<Index, 3>& h, std::span<const double> point,
+double excess_at(const Grid& grid, const GridIndex::Place& h, std::span<const double> point,
                  const std::vector<double>& tolerance) {
     std::array<std::array<Index, 2>, 3> side{};
     Index corners = 1;
     for (std::size_t k = 0; k < 3; ++k) {
-        side[k] = {h[k] / 2, (h[k] + 1) / 2 % grid.size[k]};
+        side[k] = {h[k] / 2, (h[k] + 1) / 2 % grid.index.length(k)};
         corners *= h[k] % 2 == 1 ? 2 : 1;
     }
     std::array<double, 16> mean{};
@@ -78,7 +75,7 @@ double excess_at(const Grid& grid, const std::array<Index, 3>& h, std::span<cons
     for (Index a = 0; a <= h[0] % 2; ++a)
         for (Index b = 0; b <= h[1] % 2; ++b)
             for (Index c = 0; c <= h[2] % 2; ++c) {
-                const auto s = static_cast<std::size_t>(grid.at(
+                const auto s = static_cast<std::size_t>(grid.index.at(
                     {side[0][static_cast<std::size_t>(a)], side[1][static_cast<std::size_t>(b)],
                      side[2][static_cast<std::size_t>(c)]}));
                 t = std::max(t, tolerance[s]);
@@ -97,40 +94,30 @@ double excess_at(const Grid& grid, const std::array<Index, 3>& h, std::span<cons
 BetweenSamples check_between_grid(const Spline& spline, const Samples& samples,
                                   const Parameters& parameters,
                                   const std::vector<double>& tolerance) {
-    Grid grid{.points = samples.points};
+    Grid grid{.points = samples.points, .index = GridIndex(samples.grid)};
     std::vector<std::vector<double>> halves;
-    std::array<Index, 3> shape{1, 1, 1};
-    Index stride = samples.size();
     for (std::size_t k = 0; k < samples.grid.size(); ++k) {
-        stride /= samples.grid[k];
-        grid.size[k] = samples.grid[k];
-        grid.stride[k] = stride;
         grid.closed[k] = spline.axes()[k].closed();
         measure_bends(grid, k);
         halves.push_back(
             with_halves(parameters.axes[k], grid.closed[k], spline.axes()[k].length()));
-        shape[k] = static_cast<Index>(halves.back().size());
     }
     BetweenSamples result;
     std::mutex merging;
     constexpr Index slab = 16;
-    for_each_chunk((shape[0] + slab - 1) / slab, [&](Index chunk) {
-        const Index first = chunk * slab;
-        const Index last = std::min(shape[0], first + slab);
-        std::vector<std::vector<double>> part = halves;
-        part[0].assign(halves[0].begin() + first, halves[0].begin() + last);
-        const PointSet points = evaluate_grid(spline, part);
+    for_each_block(static_cast<Index>(halves[0].size()), slab, [&](const Block& block) {
+        Parameters part{halves, {}};
+        part.axes[0].assign(halves[0].begin() + block.begin, halves[0].begin() + block.end);
+        const PointSet points = evaluate_grid(spline, part.axes);
         BetweenSamples mine;
-        Index at = 0;
-        for (Index i = first; i < last; ++i)
-            for (Index j = 0; j < shape[1]; ++j)
-                for (Index k = 0; k < shape[2]; ++k, ++at) {
-                    if (i % 2 + j % 2 + k % 2 == 0) continue;
-                    const double excess = excess_at(grid, {i, j, k}, points[at], tolerance);
-                    if (excess <= mine.excess) continue;
-                    mine.excess = excess;
-                    mine.worst_sample = grid.at({i / 2, j / 2, k / 2});
-                }
+        part.grid().for_each([&](GridIndex::Place h, Index at) {
+            h[0] += block.begin;
+            if (h[0] % 2 + h[1] % 2 + h[2] % 2 == 0) return; // a sample itself
+            const double excess = excess_at(grid, h, points[at], tolerance);
+            if (excess <= mine.excess) return;
+            mine.excess = excess;
+            mine.worst_sample = grid.index.at({h[0] / 2, h[1] / 2, h[2] / 2});
+        });
         const std::lock_guard lock(merging);
         const bool greater = mine.excess > result.excess;
         const bool earlier =

@@ -9,55 +9,44 @@ namespace batten {
 
 namespace {
 
-/// Points at a fixed distance in memory: one row of a grid along one axis.
-struct Strand {
-    const double* first;
-    Index count;
-    Index stride;
-    Index dim;
-};
+using Strand = GridIndex::Strand;
 
-double step_length(const Strand& strand, Index i, Index j, Parametrization rule) {
-    const double* a = strand.first + i * strand.stride;
-    const double* b = strand.first + j * strand.stride;
-    double square = 0;
-    for (Index d = 0; d < strand.dim; ++d) square += (b[d] - a[d]) * (b[d] - a[d]);
-    const double length = std::sqrt(square);
+double step_length(const Points& points, Index from, Index to, Parametrization rule) {
+    const double length = distance(points[from], points[to]);
     return rule == Parametrization::centripetal ? std::sqrt(length) : length;
 }
 
-constexpr Index chunk_size = 1 << 15;
+constexpr Index block_size = 1 << 15;
 
-/// Accumulated step lengths of a strand into `t`; returns the whole length. In chunks, whose sums
+/// Accumulated step lengths of a strand into `t`; returns the whole length. In blocks, whose sums
 /// are added in order.
-double accumulate(const Strand& strand, Parametrization rule, std::vector<double>& t) {
-    const Index chunks = (strand.count + chunk_size - 1) / chunk_size;
-    std::vector<double> offset(static_cast<std::size_t>(chunks));
-    for_each_chunk(chunks, [&](Index chunk) {
+double accumulate(const Points& points, const Strand& strand, Parametrization rule,
+                  std::vector<double>& t) {
+    std::vector<double> offset(static_cast<std::size_t>(block_count(strand.count, block_size)));
+    for_each_block(strand.count, block_size, [&](const Block& block) {
         double sum = 0;
-        for (Index i = chunk * chunk_size; i < std::min(strand.count, (chunk + 1) * chunk_size);
-             ++i) {
-            if (i > 0) sum += step_length(strand, i - 1, i, rule);
+        for (Index i = block.begin; i < block.end; ++i) {
+            if (i > 0) sum += step_length(points, strand[i - 1], strand[i], rule);
             t[static_cast<std::size_t>(i)] = sum;
         }
-        offset[static_cast<std::size_t>(chunk)] = sum;
+        offset[static_cast<std::size_t>(block.index)] = sum;
     });
     double before = 0;
     for (double& sum : offset) before += std::exchange(sum, before);
-    if (chunks > 1)
-        for_each_chunk(chunks, [&](Index chunk) {
-            for (Index i = chunk * chunk_size; i < std::min(strand.count, (chunk + 1) * chunk_size);
-                 ++i)
-                t[static_cast<std::size_t>(i)] += offset[static_cast<std::size_t>(chunk)];
+    if (offset.size() > 1)
+        for_each_block(strand.count, block_size, [&](const Block& block) {
+            for (Index i = block.begin; i < block.end; ++i)
+                t[static_cast<std::size_t>(i)] += offset[static_cast<std::size_t>(block.index)];
         });
     return before;
 }
 
 /// Adds the strand's normalised parameters to `sum`; returns false when it has no length.
-bool add_normalised(const Strand& strand, Parametrization rule, Closure closure,
-                    std::vector<double>& scratch, std::vector<double>& sum) {
-    double total = accumulate(strand, rule, scratch);
-    if (closure == Closure::closed) total += step_length(strand, strand.count - 1, 0, rule);
+bool add_normalised(const Points& points, const Strand& strand, Parametrization rule,
+                    Closure closure, std::vector<double>& scratch, std::vector<double>& sum) {
+    double total = accumulate(points, strand, rule, scratch);
+    if (closure == Closure::closed)
+        total += step_length(points, strand[strand.count - 1], strand[0], rule);
     if (!(total > 0)) return false;
     for (std::size_t i = 0; i < scratch.size(); ++i) sum[i] += scratch[i] / total;
     return true;
@@ -70,31 +59,19 @@ std::vector<double> uniform(Index count, Closure closure) {
     return t;
 }
 
-Index product(const std::vector<Index>& shape, std::size_t begin, std::size_t end) {
-    Index result = 1;
-    for (std::size_t k = begin; k < end; ++k) result *= shape[k];
-    return result;
-}
-
 std::vector<double> averaged(const Samples& samples, std::size_t axis, Parametrization rule,
                              Closure closure) {
-    const std::vector<Index> shape = samples.shape();
-    const Index count = shape[axis];
-    const Index inner = product(shape, axis + 1, shape.size());
-    const Index outer = product(shape, 0, axis);
+    const GridIndex grid(samples.shape());
+    const Index count = grid.length(axis);
     if (count < 2)
         throw InvalidInput(fmt::format("axis {}: {} sample, at least 2 are needed", axis, count));
     if (rule == Parametrization::uniform) return uniform(count, closure);
-    const Index dim = samples.dim();
     std::vector<double> sum(static_cast<std::size_t>(count));
     std::vector<double> scratch(sum.size());
     Index used = 0;
-    for (Index o = 0; o < outer; ++o)
-        for (Index i = 0; i < inner; ++i) {
-            const Strand strand{samples.points.data() + (o * count * inner + i) * dim, count,
-                                inner * dim, dim};
-            if (add_normalised(strand, rule, closure, scratch, sum)) ++used;
-        }
+    grid.for_each_strand(axis, [&](const Strand& strand) {
+        if (add_normalised(samples.points, strand, rule, closure, scratch, sum)) ++used;
+    });
     if (used == 0)
         throw InvalidInput(fmt::format(
             "axis {}: all points are identical; a curve through them has no length", axis));
@@ -140,6 +117,12 @@ void check_scattered(const Parameters& parameters, const Samples& samples) {
 
 } // namespace
 
+GridIndex Parameters::grid() const {
+    std::vector<Index> shape;
+    for (const auto& t : axes) shape.push_back(static_cast<Index>(t.size()));
+    return GridIndex(shape);
+}
+
 std::vector<double> parametrize_sequence(const Points& points, Parametrization rule,
                                          Closure closure) {
     return averaged({.points = points}, 0, rule, closure);
@@ -151,6 +134,29 @@ Parameters parametrize(const Samples& samples, Parametrization rule,
     for (std::size_t axis = 0; axis < closures.size(); ++axis)
         result.axes.push_back(averaged(samples, axis, rule, closures[axis]));
     return result;
+}
+
+std::vector<double> parameter_of(const Parameters& parameters, Index i) {
+    if (parameters.is_scattered()) {
+        const auto row = parameters.scattered[i];
+        return {row.begin(), row.end()};
+    }
+    const GridIndex::Place place = parameters.grid().place(i);
+    std::vector<double> t;
+    for (std::size_t k = 0; k < parameters.axes.size(); ++k)
+        t.push_back(parameters.axes[k][static_cast<std::size_t>(place[k])]);
+    return t;
+}
+
+PointSet parameter_rows(const Parameters& parameters) {
+    if (parameters.is_scattered()) return parameters.scattered;
+    const GridIndex grid = parameters.grid();
+    PointSet rows(grid.size(), parameters.axis_count());
+    grid.for_each([&](const GridIndex::Place& place, Index i) {
+        for (std::size_t k = 0; k < parameters.axes.size(); ++k)
+            rows(i, static_cast<Index>(k)) = parameters.axes[k][static_cast<std::size_t>(place[k])];
+    });
+    return rows;
 }
 
 void check(const Parameters& parameters, const Samples& samples) {

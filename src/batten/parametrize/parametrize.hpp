@@ -17,6 +17,8 @@ struct Parameters {
     Index axis_count() const {
         return is_scattered() ? scattered.dim() : static_cast<Index>(axes.size());
     }
+    /// Where the samples of a sequence or grid lie in their order.
+    GridIndex grid() const;
 };
 
 /// How the parameters follow from the points.
@@ -37,6 +39,12 @@ std::vector<double> parametrize_sequence(const Points& points, Parametrization r
 /// `closures` has one entry per axis. Throws InvalidInput as above, naming the axis.
 Parameters parametrize(const Samples& samples, Parametrization rule,
                        const std::vector<Closure>& closures);
+
+/// Parameter of sample `i`, one per axis.
+std::vector<double> parameter_of(const Parameters& parameters, Index i);
+
+/// The parameters as a cloud's: (m x axes), one row per sample.
+PointSet parameter_rows(const Parameters& parameters);
 
 /// Throws InvalidInput unless the parameters fit the samples in number and are finite, ascending
 /// and, per axis, not all equal.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <set>
 
 namespace batten {
 
@@ -29,7 +30,8 @@ std::string name_of(const HeldBoundary& boundary) {
                        boundary.end == AxisEnd::begin ? 0 : 1);
 }
 
-void check_tangent(const HeldTangent& tangent, const Samples& samples) {
+void check_tangent(const HeldTangent& tangent, const Samples& samples, SampleKind kind,
+                   Index axes) {
     const Index m = samples.size();
     const Index i = tangent.sample;
     if (i < 0 || i >= m)
@@ -37,14 +39,14 @@ void check_tangent(const HeldTangent& tangent, const Samples& samples) {
     if (static_cast<Index>(tangent.value.size()) != samples.dim())
         throw InvalidInput(fmt::format("tangent at sample {}: {} coordinates given in dimension {}",
                                        i, tangent.value.size(), samples.dim()));
-    if (tangent.axis < 0 || tangent.axis >= samples.axis_count())
+    if (tangent.axis < 0 || tangent.axis >= axes)
         throw InvalidInput(
             fmt::format("tangent at sample {}: axis {} does not exist", i, tangent.axis));
     const double length = length_of(tangent.value);
     if (!std::isfinite(length) || (tangent.kind == TangentKind::direction && !(length > 0)))
         throw InvalidInput(
             fmt::format("tangent at sample {}: a finite vector of some length is needed", i));
-    if (samples.grid.empty() && tangent.kind == TangentKind::direction) {
+    if (kind == SampleKind::sequence && tangent.kind == TangentKind::direction) {
         const auto before = samples.points[std::max<Index>(i - 1, 0)];
         const auto after = samples.points[std::min(i + 1, m - 1)];
         std::vector<double> chord(before.size());
@@ -56,14 +58,16 @@ void check_tangent(const HeldTangent& tangent, const Samples& samples) {
     }
 }
 
-void check_boundary(const HeldBoundary& boundary, const Samples& samples,
-                    const std::vector<int>& degree, const std::vector<Closure>& closures) {
-    const std::string name = name_of(boundary);
-    const auto axes = static_cast<Index>(degree.size());
-    if (samples.grid.empty())
-        throw InvalidInput(name + ": only a grid's surface or volume has boundaries to hold");
+void check_boundary(const HeldBoundary& boundary, const Samples& samples, SampleKind kind,
+                    const AxisPlan& plan) {
+    const std::vector<int>& degree = plan.degree;
+    const auto axes = static_cast<Index>(plan.count());
+    if (kind != SampleKind::grid)
+        throw InvalidInput("boundary: only a grid's surface or volume has boundaries to hold");
     if (boundary.axis < 0 || boundary.axis >= axes)
-        throw InvalidInput(fmt::format("{}: the fit has {} axes", name, axes));
+        throw InvalidInput(
+            fmt::format("boundary of axis {}: the fit has {} axes", boundary.axis, axes));
+    const std::string name = name_of(boundary);
     if (boundary.spline.axis_count() != axes - 1)
         throw InvalidInput(fmt::format("{}: a spline of {} {} is needed, got {}", name, axes - 1,
                                        axes == 2 ? "axis" : "axes", boundary.spline.axis_count()));
@@ -71,7 +75,7 @@ void check_boundary(const HeldBoundary& boundary, const Samples& samples,
         throw InvalidInput(fmt::format("{}: it is of dimension {}, the samples of {}", name,
                                        boundary.spline.dim(), samples.dim()));
     for (std::size_t k = 0, other = 0; k < degree.size(); ++k) {
-        if (closures[k] == Closure::closed)
+        if (plan.closures[k] == Closure::closed)
             throw InvalidInput(fmt::format("{}: axis {} is closed", name, k));
         if (static_cast<int>(k) == boundary.axis) continue;
         const KnotVector& knots = boundary.spline.axis(static_cast<Index>(other++));
@@ -127,11 +131,20 @@ void hold_boundary(const HeldBoundary& boundary, const std::vector<KnotVector>& 
 
 } // namespace
 
-void check_held(const HoldOptions& hold, const Samples& samples, const std::vector<int>& degree,
-                const std::vector<Closure>& closures) {
-    for (const HeldTangent& tangent : hold.tangents) check_tangent(tangent, samples);
+void check_held(const HoldOptions& hold, const Samples& samples, SampleKind kind,
+                const AxisPlan& plan) {
+    std::set<Index> seen;
+    for (Index i : hold.interpolate) {
+        if (i < 0 || i >= samples.size())
+            throw InvalidInput(fmt::format("interpolated sample {}: the samples are 0 to {}", i,
+                                           samples.size() - 1));
+        if (!seen.insert(i).second)
+            throw InvalidInput(fmt::format("interpolated sample {} is given twice", i));
+    }
+    for (const HeldTangent& tangent : hold.tangents)
+        check_tangent(tangent, samples, kind, static_cast<Index>(plan.count()));
     for (const HeldBoundary& boundary : hold.boundaries)
-        check_boundary(boundary, samples, degree, closures);
+        check_boundary(boundary, samples, kind, plan);
 }
 
 Constraints held_constraints(const std::vector<KnotVector>& axes, const Samples& samples,
@@ -210,6 +223,30 @@ KnotVector knots_for_boundaries(const KnotVector& knots, int axis,
     others.insert(others.end(), needed.begin(), needed.end());
     std::ranges::sort(others);
     return knots_around(knots.degree(), others, knots.begin(), knots.end());
+}
+
+double boundary_error(const Spline& spline, const std::vector<HeldBoundary>& boundaries) {
+    double worst = 0;
+    for (const HeldBoundary& boundary : boundaries) {
+        std::vector<std::vector<double>> whole; // places on the surface, and on the boundary
+        std::vector<std::vector<double>> own;
+        for (int k = 0; k < static_cast<int>(spline.axis_count()); ++k) {
+            const KnotVector& knots = spline.axis(k);
+            if (k == boundary.axis) {
+                whole.push_back({boundary.end == AxisEnd::begin ? knots.begin() : knots.end()});
+                continue;
+            }
+            whole.push_back(greville_abscissae(knots));
+            const KnotVector& other = boundary.spline.axis(boundary_axis(boundary, k));
+            own.push_back(whole.back());
+            for (double& t : own.back())
+                t = other.begin() + other.length() * ((t - knots.begin()) / knots.length());
+        }
+        PointSet gap = evaluate_grid(spline, whole);
+        add_scaled(gap, -1.0, evaluate_grid(boundary.spline, own));
+        worst = std::max(worst, largest_length(gap));
+    }
+    return worst;
 }
 
 double tangent_error(const Spline& spline, const Samples& samples, const Parameters& parameters,

@@ -1,4 +1,4 @@
-#include <batten/problem/plan.hpp>
+#include <batten/problem/initial.hpp>
 
 #include <batten/spline/spline.hpp>
 

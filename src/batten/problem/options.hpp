@@ -2,7 +2,7 @@
 
 #include <batten/basis/place_knots.hpp>
 #include <batten/iterate/iterate.hpp>
-#include <batten/parametrize/parametrize.hpp>
+#include <batten/parametrize/project.hpp>
 #include <batten/spline/spline.hpp>
 
 #include <functional>
@@ -21,10 +21,16 @@ struct ShapeOptions {
     /// Highest derivative of a closed curve that is continuous at its first sample: 0 lets it bend
     /// there; degree - 1 (-1 stands for it) is as smooth as elsewhere.
     int seam_continuity = -1;
-    Parametrization parametrization = Parametrization::chord;
-    /// Given parameters, in place of `parametrization`.
+    /// How parameters follow from the points; where it is left open by chord length, of a table of
+    /// heights evenly.
+    std::optional<Parametrization> parametrization{};
+    /// Given parameters, in place of `parametrization`; (m x axes) for a cloud.
     std::optional<Parameters> parameters{};
-    KnotPlacement placement = KnotPlacement::data;
+    /// Makes the samples a cloud whose parameters are its points' coordinates in this plane.
+    std::optional<Projection> projection{};
+    /// Where knots go; where it is left open evenly between the parameters, from both ends alike,
+    /// or by the papers' rule (KnotPlacement::data) when a method is named.
+    std::optional<KnotPlacement> placement{};
     /// Given knots per axis, in place of `placement` and `control_points`.
     std::vector<std::vector<double>> knots{};
 };
@@ -37,7 +43,7 @@ enum class Initial {
 };
 
 struct MethodOptions {
-    /// One of methods().
+    /// One of drivers(), or `auto`: the fastest that takes what is asked.
     std::string name = "auto";
     /// The method's own numbers.
     Settings settings{};
@@ -104,7 +110,8 @@ enum class Corners {
 
 /// A distance that no sample may be from the spline; then the number of control points is found.
 struct ToleranceOptions {
-    /// For all samples, in their unit; 0: the number of control points is stated instead.
+    /// For all samples, in their unit; 0: not stated. Where no size is stated either it is a
+    /// thousandth of the diagonal of the samples' box.
     double value = 0;
     /// One per sample, in place of `value`; all positive.
     std::vector<double> per_sample{};
@@ -151,6 +158,9 @@ struct FitOptions {
     /// Termination::cancelled.
     std::function<bool()> cancelled{};
     Observer observer{};
+    /// Lengths are given in this unit's parts: words multiply them by its inverse. Set by fit() for
+    /// coordinates whose squares leave the range of numbers.
+    double unit = 1;
 };
 
 } // namespace batten

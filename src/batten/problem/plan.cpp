@@ -1,6 +1,7 @@
 #include <batten/problem/plan.hpp>
 
-#include <batten/spline/spline.hpp>
+#include <batten/basis/place_knots.hpp>
+#include <batten/problem/held.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -30,98 +31,114 @@ auto on_axis(std::size_t axis, Work work) {
     }
 }
 
+/// Where an axis's parameters begin and end.
+struct Extent {
+    double begin;
+    double end;
+};
+
+Extent extent_of(const Parameters& parameters, std::size_t axis) {
+    if (!parameters.is_scattered())
+        return {parameters.axes[axis].front(), parameters.axes[axis].back()};
+    const PointSet box = bounding_box(parameters.scattered);
+    return {box(0, static_cast<Index>(axis)), box(1, static_cast<Index>(axis))};
+}
+
 KnotVector given_knots(const std::vector<double>& knots, int degree, Closure closure,
-                       const std::vector<double>& t) {
+                       const Extent& extent) {
     KnotVector result(degree, knots, closure);
-    if (closure == Closure::open && !t.empty() &&
-        (t.front() < result.begin() || t.back() > result.end()))
+    if (closure == Closure::open && (extent.begin < result.begin() || extent.end > result.end()))
         throw InvalidInput(fmt::format("parameters [{}, {}] are outside the knots' domain [{}, {}]",
-                                       t.front(), t.back(), result.begin(), result.end()));
+                                       extent.begin, extent.end, result.begin(), result.end()));
     return result;
+}
+
+/// The rule for knots where the options leave it open: that of the papers for their methods.
+KnotPlacement placement_of(const FitOptions& options) {
+    if (options.shape.placement) return *options.shape.placement;
+    return options.method.name == "auto" ? KnotPlacement::both_ends : KnotPlacement::data;
+}
+
+/// Closed knots whose seam has the multiplicity that its continuity takes.
+KnotVector with_seam(const KnotVector& knots, int copies) {
+    if (copies == 0) return knots;
+    std::vector<double> interior(static_cast<std::size_t>(copies), knots.begin());
+    const std::vector<double> breaks = knots.breakpoints();
+    interior.insert(interior.end(), breaks.begin() + 1, breaks.end() - 1);
+    return knots_around(knots.degree(), interior, knots.begin(), knots.end(), Closure::closed);
+}
+
+KnotVector axis_knots(const Problem& problem, std::size_t axis) {
+    const ShapeOptions& shape = problem.options.shape;
+    const AxisPlan& plan = problem.axes;
+    const Extent extent = extent_of(problem.parameters, axis);
+    const int degree = plan.degree[axis];
+    const Closure closure = plan.closures[axis];
+    if (!shape.knots.empty()) return given_knots(shape.knots[axis], degree, closure, extent);
+    const bool closed = closure == Closure::closed;
+    const int copies =
+        closed && shape.seam_continuity >= 0 ? degree - 1 - shape.seam_continuity : 0;
+    const Index n = plan.control_points[axis] - copies;
+    if (n < degree + 1)
+        throw InvalidInput(
+            fmt::format("degree {} with continuity C{} at the seam needs at least {} "
+                        "control points, got {}",
+                        degree, shape.seam_continuity, degree + 1 + copies, n + copies));
+    const KnotPlacement rule = placement_of(problem.options);
+    const KnotVector knots =
+        rule == KnotPlacement::uniform || problem.kind == SampleKind::cloud
+            ? uniform_knots(degree, n, closed ? 0 : extent.begin, closed ? 1 : extent.end, closure)
+            : knots_from_parameters(problem.parameters.axes[axis], degree, n, closure, rule);
+    return with_seam(knots, copies);
 }
 
 } // namespace
 
-std::vector<int> degrees_per_axis(const ShapeOptions& options, Index axes) {
-    return per_axis(options.degree, axes, "degree");
-}
-
-AxisPlan plan_axes(const Samples& samples, const ShapeOptions& options) {
-    const Index axes = options.parameters ? options.parameters->axis_count() : samples.axis_count();
+AxisPlan plan_axes(const ShapeOptions& options, Index axes) {
     AxisPlan plan;
-    plan.degree = degrees_per_axis(options, axes);
+    plan.degree = per_axis(options.degree, axes, "degree");
     plan.closures = per_axis(options.closures, axes, "closed");
-    if (!options.knots.empty()) {
-        if (static_cast<Index>(options.knots.size()) != axes)
-            throw InvalidInput(
-                fmt::format("knots: {} vectors given for {} axes", options.knots.size(), axes));
-        return plan;
-    }
-    if (options.control_points.empty())
-        throw InvalidInput("the number of control points is not stated");
-    plan.control_points = per_axis(options.control_points, axes, "control points");
-    for (std::size_t k = 0; k < plan.degree.size(); ++k) {
+    for (std::size_t k = 0; k < plan.degree.size(); ++k)
         if (plan.degree[k] < 1 || plan.degree[k] > max_degree)
             throw InvalidInput(fmt::format("axis {}: degree {} is outside 1 to {}", k,
                                            plan.degree[k], max_degree));
+    if (!options.knots.empty() && static_cast<Index>(options.knots.size()) != axes)
+        throw InvalidInput(
+            fmt::format("knots: {} vectors given for {} axes", options.knots.size(), axes));
+    if (options.control_points.empty()) return plan;
+    if (!options.knots.empty())
+        throw InvalidInput(
+            "control points and knots: the knots state the number of control points");
+    plan.control_points = per_axis(options.control_points, axes, "control points");
+    for (std::size_t k = 0; k < plan.count(); ++k)
         if (plan.control_points[k] < plan.degree[k] + 1)
             throw InvalidInput(
                 fmt::format("axis {}: degree {} needs at least {} control points, got {}", k,
                             plan.degree[k], plan.degree[k] + 1, plan.control_points[k]));
-        if (options.parameters && options.parameters->is_scattered()) continue;
-        if (plan.control_points[k] > samples.shape()[k])
-            throw InvalidInput(
-                fmt::format("axis {}: {} control points need at least as many samples, got {}", k,
-                            plan.control_points[k], samples.shape()[k]));
-    }
     return plan;
 }
 
-Parameters choose_parameters(const Samples& samples, const ShapeOptions& options,
-                             const AxisPlan& plan) {
-    if (!options.parameters) return parametrize(samples, options.parametrization, plan.closures);
-    check(*options.parameters, samples);
-    return *options.parameters;
-}
-
-std::vector<KnotVector> choose_knots(const Parameters& parameters, const ShapeOptions& options,
-                                     const AxisPlan& plan) {
+std::vector<KnotVector> fixed_knots(const Problem& problem) {
+    if (!problem.sized()) throw InvalidInput("the number of control points is not stated");
     std::vector<KnotVector> result;
-    for (std::size_t k = 0; k < plan.degree.size(); ++k) {
-        std::vector<double> t;
-        if (parameters.is_scattered()) {
-            for (Index i = 0; i < parameters.scattered.size(); ++i)
-                t.push_back(parameters.scattered(i, static_cast<Index>(k)));
-            std::ranges::sort(t);
-        } else {
-            t = parameters.axes[k];
-        }
-        result.push_back(on_axis(k, [&] {
-            const Closure closure = plan.closures[k];
-            if (!options.knots.empty())
-                return given_knots(options.knots[k], plan.degree[k], closure, t);
-            const Index n = plan.control_points[k];
-            if (options.placement == KnotPlacement::data && !parameters.is_scattered())
-                return knots_from_parameters(t, plan.degree[k], n, closure);
-            const bool closed = closure == Closure::closed;
-            return uniform_knots(plan.degree[k], n, closed ? 0 : t.front(), closed ? 1 : t.back(),
-                                 closure);
-        }));
-    }
+    for (std::size_t k = 0; k < problem.axes.count(); ++k)
+        result.push_back(knots_for_boundaries(on_axis(k, [&] { return axis_knots(problem, k); }),
+                                              static_cast<int>(k),
+                                              problem.options.hold.boundaries));
     return result;
 }
 
-std::vector<Index> smoothing_size(const Samples& samples, const ShapeOptions& shape) {
-    const bool cloud = shape.parameters && shape.parameters->is_scattered();
-    const Index axes = cloud ? shape.parameters->axis_count() : samples.axis_count();
-    const std::vector<int> degree = degrees_per_axis(shape, axes);
+std::vector<Index> smoothing_size(const Samples& samples, const AxisPlan& plan) {
+    const auto axes = static_cast<Index>(plan.count());
+    const bool grid = !samples.grid.empty();
     std::vector<Index> result;
-    for (std::size_t k = 0; k < degree.size(); ++k) {
+    for (std::size_t k = 0; k < plan.count(); ++k) {
         const double along =
-            cloud ? std::pow(static_cast<double>(samples.size()), 1 / static_cast<double>(axes))
-                  : static_cast<double>(samples.shape()[k]);
+            grid ? static_cast<double>(samples.grid[k])
+                 : std::pow(static_cast<double>(samples.size()), 1 / static_cast<double>(axes));
         const Index most = axes == 1 ? 200 : axes == 2 ? 60 : 20;
-        result.push_back(std::clamp(static_cast<Index>(along / 2), Index{2 * degree[k] + 1}, most));
+        result.push_back(
+            std::clamp(static_cast<Index>(along / 2), Index{2 * plan.degree[k] + 1}, most));
     }
     return result;
 }

@@ -18,6 +18,14 @@ struct HistoryEntry {
     double constraint_error; ///< sum of squares; 0 without constraints
 };
 
+/// Something that was stated and that the fit must reach.
+struct Goal {
+    std::string name; ///< tolerance, deviation, gradient, relative gradient, exact samples, ...
+    double stated;    ///< at most this much
+    double reached;
+    bool met;
+};
+
 /// A polygon on the way: the free control points of one iteration.
 struct Frame {
     Index iteration;
@@ -43,12 +51,14 @@ struct FitReport {
     double predicted_rate = 0; ///< 0 when the theory gives none
     double observed_rate = 0;  ///< 0 when the run was too short
     Deviation deviation;
-    Index interpolated = 0;       ///< samples that must be hit exactly
-    double constraint_error = 0;  ///< largest distance from one of them
-    Index tangents = 0;           ///< directions and derivatives that must hold
-    double tangent_error = 0;     ///< by how much they are missed, over the data's size
-    Index boundaries = 0;         ///< boundaries that must hold
-    Index inflections = -1;       ///< of the control polygon, where they are kept; else -1
+    Index interpolated = 0;         ///< samples that must be hit exactly
+    double constraint_error = 0;    ///< largest distance from one of them
+    Index tangents = 0;             ///< directions and derivatives that must hold
+    double tangent_error = 0;       ///< by how much they are missed, over the data's size
+    Index boundaries = 0;           ///< boundaries that must hold
+    double boundary_error = 0;      ///< largest distance from one of them
+    Index inflections = -1;         ///< of the control polygon, where they are kept; else -1
+    Index allowed_inflections = -1; ///< that the kept shape allows it; -1: not counted
     Index curve_inflections = -1; ///< of a planar curve fitted to a tolerance, those larger than a
                                   ///< quarter of it; -1 where not counted
     Index data_inflections = -1;  ///< the same of the samples
@@ -67,8 +77,13 @@ struct FitReport {
     std::vector<std::pair<std::string, double>> seconds; ///< per stage, in order
     std::vector<HistoryEntry> history;
     std::vector<Frame> frames; ///< with FitOptions::most_frames, evenly over the iterations
+    std::vector<Goal> goals;   ///< all that was stated, met or not
     std::vector<std::string> notes;
 
+    /// Whether an iteration was run, so that gradients and rates mean something.
+    bool iterated() const { return first_gradient_norm > 0 || iterations > 0; }
+    /// Whether every stated goal is reached.
+    bool goals_met() const;
     /// Whether the spline can be used: all endings but breakdown.
     bool usable() const { return termination != Termination::breakdown; }
     /// Sum of the stages.

@@ -12,4 +12,13 @@ struct FitResult {
     Parameters parameters;
 };
 
+/// What a driver answers: its account holds how it went, not yet what every fit's account says.
+struct Fitted {
+    Spline spline;
+    Parameters parameters; ///< of the problem's samples, as the driver left them
+    FitReport report{};
+    /// How the driver means samples to be close.
+    DeviationKind judged_by = DeviationKind::parametric;
+};
+
 } // namespace batten

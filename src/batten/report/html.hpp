@@ -1,7 +1,7 @@
 #pragma once
 
-#include <batten/problem/result.hpp>
 #include <batten/io/spline_file.hpp>
+#include <batten/problem/result.hpp>
 
 #include <string>
 

@@ -24,6 +24,61 @@ Json history_json(const std::vector<HistoryEntry>& history) {
     return rows;
 }
 
+Json goals_json(const std::vector<Goal>& goals) {
+    Json rows = Json::array();
+    for (const Goal& goal : goals)
+        rows.push_back({{"goal", goal.name},
+                        {"stated", number(goal.stated)},
+                        {"reached", number(goal.reached)},
+                        {"met", goal.met}});
+    return rows;
+}
+
+void add_course(Json& json, const FitReport& r) {
+    if (!r.iterated()) return;
+    json["gradient_norm"] = number(r.gradient_norm);
+    json["first_gradient_norm"] = number(r.first_gradient_norm);
+    if (r.predicted_rate > 0) json["predicted_rate"] = r.predicted_rate;
+    if (r.observed_rate > 0) json["observed_rate"] = r.observed_rate;
+}
+
+void add_held(Json& json, const FitReport& r) {
+    if (r.interpolated > 0) {
+        json["interpolated"] = r.interpolated;
+        json["constraint_error"] = number(r.constraint_error);
+    }
+    if (r.tangents > 0) {
+        json["tangents"] = r.tangents;
+        json["tangent_error"] = number(r.tangent_error);
+    }
+    if (r.boundaries > 0) {
+        json["boundaries"] = r.boundaries;
+        json["boundary_error"] = number(r.boundary_error);
+    }
+    if (r.inflections >= 0) json["inflections"] = r.inflections;
+    if (r.allowed_inflections >= 0) json["allowed_inflections"] = r.allowed_inflections;
+    if (r.curve_inflections >= 0) {
+        json["curve_inflections"] = r.curve_inflections;
+        json["data_inflections"] = r.data_inflections;
+    }
+}
+
+void add_noise(Json& json, const FitReport& r) {
+    if (r.smoothing > 0) json["smoothing"] = r.smoothing;
+    if (r.freedom > 0) json["degrees_of_freedom"] = r.freedom;
+    if (r.noise_level > 0) json["noise_level"] = number(r.noise_level);
+    if (!r.set_aside.empty()) json["set_aside"] = r.set_aside;
+}
+
+void add_tolerance(Json& json, const FitReport& r) {
+    if (!(r.tolerance > 0)) return;
+    json["tolerance"] = r.tolerance;
+    json["verdict"] = r.verdict;
+    if (r.between_samples > 0) json["between_samples"] = number(r.between_samples);
+    json["stages"] = Json::object();
+    for (const auto& [stage, count] : r.stages) json["stages"][stage] = count;
+}
+
 } // namespace
 
 std::string FitReport::to_json() const {
@@ -45,40 +100,11 @@ std::string FitReport::to_json() const {
     json["rms_deviation"] = number(deviation.rms);
     json["worst_sample"] = deviation.worst_sample;
     json["deviation_kind"] = to_string(deviation.kind);
-    if (method != "direct") {
-        json["gradient_norm"] = number(gradient_norm);
-        json["first_gradient_norm"] = number(first_gradient_norm);
-        if (predicted_rate > 0) json["predicted_rate"] = predicted_rate;
-        if (observed_rate > 0) json["observed_rate"] = observed_rate;
-    }
-    if (interpolated > 0) {
-        json["interpolated"] = interpolated;
-        json["constraint_error"] = number(constraint_error);
-    }
-    if (smoothing > 0) json["smoothing"] = smoothing;
-    if (freedom > 0) {
-        json["degrees_of_freedom"] = freedom;
-        json["noise_level"] = number(noise_level);
-    }
-    if (!set_aside.empty()) json["set_aside"] = set_aside;
-    if (tangents > 0) {
-        json["tangents"] = tangents;
-        json["tangent_error"] = number(tangent_error);
-    }
-    if (boundaries > 0) json["boundaries"] = boundaries;
-    if (inflections >= 0) json["inflections"] = inflections;
-    if (curve_inflections >= 0) {
-        json["curve_inflections"] = curve_inflections;
-        json["data_inflections"] = data_inflections;
-    }
-    if (tolerance > 0) {
-        json["tolerance"] = tolerance;
-        json["verdict"] = verdict;
-        if (noise_level > 0) json["noise_level"] = number(noise_level);
-        if (between_samples > 0) json["between_samples"] = number(between_samples);
-        json["stages"] = Json::object();
-        for (const auto& [stage, count] : stages) json["stages"][stage] = count;
-    }
+    if (!goals.empty()) json["goals"] = goals_json(goals);
+    add_course(json, *this);
+    add_held(json, *this);
+    add_noise(json, *this);
+    add_tolerance(json, *this);
     json["data_size"] = data_size;
     json["seconds"] = Json::object();
     for (const auto& [stage, time] : seconds) json["seconds"][stage] = time;

@@ -30,6 +30,10 @@ double FitReport::total_seconds() const {
     return total;
 }
 
+bool FitReport::goals_met() const {
+    return std::ranges::all_of(goals, [](const Goal& goal) { return goal.met; });
+}
+
 std::string FitReport::brief() const {
     std::vector<Index> shape = control_shape;
     for (std::size_t k = 0; k < shape.size(); ++k)
@@ -49,73 +53,113 @@ std::string FitReport::full() const {
     return text;
 }
 
+namespace {
+
+using Lines = std::vector<std::pair<std::string, std::string>>;
+
+Lines closeness(const FitReport& r) {
+    Lines lines{
+        {"deviation", fmt::format("largest {:.6g} at sample {} ({}), {}", r.deviation.maximum,
+                                  r.deviation.worst_sample, to_string(r.deviation.kind),
+                                  percentage(r.deviation.maximum, r.data_size))}};
+    if (!(r.tolerance > 0)) return lines;
+    lines.emplace_back("tolerance", fmt::format("{:.6g}: {}", r.tolerance, r.verdict));
+    std::string counts;
+    for (const auto& [stage, count] : r.stages)
+        counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", stage, count);
+    if (!counts.empty()) lines.emplace_back("control", counts);
+    return lines;
+}
+
+Lines course(const FitReport& r) {
+    Lines lines{{"method", r.method_reason.empty()
+                               ? r.method
+                               : fmt::format("{} ({})", r.method, r.method_reason)}};
+    if (!r.iterated()) return lines;
+    std::string chosen;
+    for (const auto& [name, value] : r.settings)
+        chosen += fmt::format("{}{} = {:.12g}", chosen.empty() ? "" : ", ", name, value);
+    if (!chosen.empty()) lines.emplace_back("settings", chosen);
+    lines.emplace_back("iterations",
+                       fmt::format("{}, gradient {:.3g} of {:.3g} at the start", r.iterations,
+                                   r.gradient_norm, r.first_gradient_norm));
+    if (r.predicted_rate > 0 && r.observed_rate > 0)
+        lines.emplace_back("rate", fmt::format("{:.4f} per iteration observed, {:.4f} predicted",
+                                               r.observed_rate, r.predicted_rate));
+    return lines;
+}
+
+Lines noise(const FitReport& r) {
+    Lines lines;
+    if (r.smoothing > 0)
+        lines.emplace_back("smoothing",
+                           fmt::format("lambda {:.4g}{}", r.smoothing,
+                                       r.freedom > 0
+                                           ? fmt::format(" by cross-validation, {:.1f} degrees of "
+                                                         "freedom, noise level {:.3g}",
+                                                         r.freedom, r.noise_level)
+                                           : ""));
+    if (r.set_aside.empty()) return lines;
+    const std::size_t shown = std::min<std::size_t>(r.set_aside.size(), 12);
+    lines.emplace_back("set aside",
+                       fmt::format("{} samples as outliers: {}{}", r.set_aside.size(),
+                                   fmt::join(r.set_aside.begin(),
+                                             r.set_aside.begin() + static_cast<Index>(shown), ", "),
+                                   shown < r.set_aside.size() ? ", ..." : ""));
+    return lines;
+}
+
+/// How exactly holds what must: "held" only when it is.
+std::string held_words(Index count, std::string_view one, std::string_view many,
+                       std::string_view held, const FitReport& r, std::string_view goal,
+                       double error) {
+    const bool met =
+        std::ranges::all_of(r.goals, [&](const Goal& g) { return g.name != goal || g.met; });
+    return fmt::format("{} {} {} {:.2g}", count, count == 1 ? one : many,
+                       met ? fmt::format("{} to", held) : "missed by up to", error);
+}
+
+Lines exactness(const FitReport& r) {
+    Lines lines;
+    if (r.interpolated > 0)
+        lines.emplace_back("exact", held_words(r.interpolated, "sample", "samples", "hit", r,
+                                               "exact samples", r.constraint_error));
+    if (r.tangents > 0)
+        lines.emplace_back("exact", held_words(r.tangents, "tangent", "tangents", "held", r,
+                                               "tangents", r.tangent_error));
+    if (r.boundaries > 0)
+        lines.emplace_back("exact", held_words(r.boundaries, "boundary", "boundaries", "held", r,
+                                               "boundaries", r.boundary_error));
+    if (r.inflections >= 0)
+        lines.emplace_back(
+            "shape", r.allowed_inflections >= 0
+                         ? fmt::format("{} inflections in the control polygon, {} allowed",
+                                       r.inflections, r.allowed_inflections)
+                         : fmt::format("{} inflections in the control polygon", r.inflections));
+    return lines;
+}
+
+/// Stated goals that were not reached, but for the tolerance, whose verdict says so.
+Lines missed_goals(const FitReport& r) {
+    Lines lines;
+    for (const Goal& goal : r.goals)
+        if (!goal.met && goal.name != "tolerance")
+            lines.emplace_back("missed", fmt::format("{}: stated {:.6g}, reached {:.6g}", goal.name,
+                                                     goal.stated, goal.reached));
+    return lines;
+}
+
+} // namespace
+
 std::vector<std::pair<std::string, std::string>> FitReport::lines() const {
-    std::vector<std::pair<std::string, std::string>> result;
-    const auto line = [&](std::string_view name, const std::string& value) {
-        result.emplace_back(name, value);
-    };
-    line("deviation", fmt::format("largest {:.6g} at sample {} ({}), {}", deviation.maximum,
-                                  deviation.worst_sample, to_string(deviation.kind),
-                                  percentage(deviation.maximum, data_size)));
-    if (tolerance > 0) {
-        line("tolerance", fmt::format("{:.6g}: {}", tolerance, verdict));
-        std::string counts;
-        for (const auto& [stage, count] : stages)
-            counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", stage, count);
-        if (!counts.empty()) line("control", counts);
-    }
-    line("method", method_reason.empty() ? method : fmt::format("{} ({})", method, method_reason));
-    if (method != "direct" && method != "tolerance") {
-        std::string chosen;
-        for (const auto& [name, value] : settings)
-            chosen += fmt::format("{}{} = {:.12g}", chosen.empty() ? "" : ", ", name, value);
-        if (!chosen.empty()) line("settings", chosen);
-        line("iterations", fmt::format("{}, gradient {:.3g} of {:.3g} at the start", iterations,
-                                       gradient_norm, first_gradient_norm));
-        if (predicted_rate > 0 && observed_rate > 0)
-            line("rate", fmt::format("{:.4f} per iteration observed, {:.4f} predicted",
-                                     observed_rate, predicted_rate));
-    }
-    if (smoothing > 0)
-        line("smoothing",
-             fmt::format("lambda {:.4g}{}", smoothing,
-                         freedom > 0
-                             ? fmt::format(" by cross-validation, {:.1f} degrees of freedom, "
-                                           "noise level {:.3g}",
-                                           freedom, noise_level)
-                             : ""));
-    if (!set_aside.empty()) {
-        const std::size_t shown = std::min<std::size_t>(set_aside.size(), 12);
-        line("set aside",
-             fmt::format(
-                 "{} samples as outliers: {}{}", set_aside.size(),
-                 fmt::join(set_aside.begin(), set_aside.begin() + static_cast<Index>(shown), ", "),
-                 shown < set_aside.size() ? ", ..." : ""));
-    }
-    if (interpolated > 0)
-        line(
-            "exact",
-            constraint_error <= 1e-8 * data_size
-                ? fmt::format("{} samples hit to {:.2g}", interpolated, constraint_error)
-                : fmt::format("{} samples NOT hit yet: missed by up to {:.2g}; more iterations, or "
-                              "--method direct",
-                              interpolated, constraint_error));
-    if (tangents > 0)
-        line("exact", fmt::format("{} {} held to {:.2g}", tangents,
-                                  tangents == 1 ? "tangent" : "tangents", tangent_error));
-    if (boundaries > 0)
-        line("exact",
-             fmt::format("{} {} held", boundaries, boundaries == 1 ? "boundary" : "boundaries"));
-    if (inflections >= 0)
-        line("shape", tolerance > 0
-                          ? fmt::format("{} inflections in the control polygon, {} in the samples",
-                                        inflections, data_inflections)
-                          : fmt::format("{} inflections in the control polygon", inflections));
+    Lines result;
+    for (const auto part : {closeness, course, noise, exactness, missed_goals})
+        std::ranges::move(part(*this), std::back_inserter(result));
     std::string times;
     for (const auto& [stage, time] : seconds)
         times += fmt::format("{}{} {:.2g}", times.empty() ? "" : ", ", stage, time);
-    line("seconds", fmt::format("{:.3g} ({})", total_seconds(), times));
-    for (const std::string& note : notes) line("note", note);
+    result.emplace_back("seconds", fmt::format("{:.3g} ({})", total_seconds(), times));
+    for (const std::string& note : notes) result.emplace_back("note", note);
     return result;
 }
 

@@ -1,9 +1,9 @@
 #include <batten/robust/robust_fit.hpp>
 
 #include <batten/basis/place_knots.hpp>
+#include <batten/core/distinct.hpp>
 #include <batten/iterate/conjugate_gradients.hpp>
 #include <batten/iterate/iterate.hpp>
-#include <batten/problem/plan.hpp>
 #include <batten/samples/noise.hpp>
 #include <batten/solve/direct.hpp>
 
@@ -60,24 +60,21 @@ std::vector<double> bounded_chords(const Points& q, Closure closure) {
 
 /// Parameters of a grid's axis from the medians, over its rows, of each step's part of the row.
 std::vector<double> median_chords(const Samples& samples, std::size_t axis, Closure closure) {
-    const Index m = samples.grid[axis];
-    Index inner = 1;
-    for (std::size_t k = axis + 1; k < samples.grid.size(); ++k) inner *= samples.grid[k];
-    const Index rows = samples.size() / m;
+    const GridIndex grid(samples.grid);
+    const Index m = grid.length(axis);
     const Index count = closure == Closure::closed ? m : m - 1;
     std::vector<std::vector<double>> part(static_cast<std::size_t>(count));
-    for (Index r = 0; r < rows; ++r) {
-        const Index first = r / inner * m * inner + r % inner;
+    grid.for_each_strand(axis, [&](const GridIndex::Strand& strand) {
         std::vector<double> chord;
         double total = 0;
         for (Index j = 0; j < count; ++j) {
-            chord.push_back(distance(samples.points[first + j * inner],
-                                     samples.points[first + (j + 1) % m * inner]));
+            chord.push_back(
+                distance(samples.points[strand[j]], samples.points[strand[(j + 1) % m]]));
             total += chord.back();
         }
-        if (!(total > 0)) continue;
+        if (!(total > 0)) return;
         for (std::size_t j = 0; j < chord.size(); ++j) part[j].push_back(chord[j] / total);
-    }
+    });
     std::vector<double> t{0};
     for (auto& steps : part) t.push_back(t.back() + median(std::move(steps)));
     const double length = t.back();
@@ -91,30 +88,24 @@ std::vector<double> median_chords(const Samples& samples, std::size_t axis, Clos
 
 } // namespace
 
-Parameters robust_parameters(const Samples& samples, const FitOptions& options) {
-    if (options.shape.parameters) return *options.shape.parameters;
-    if (options.shape.parametrization != Parametrization::uniform) {
-        const auto closure = [&](std::size_t k) {
-            const auto& closures = options.shape.closures;
-            return closures[std::min(k, closures.size() - 1)];
-        };
-        if (samples.grid.empty()) return {{bounded_chords(samples.points, closure(0))}, {}};
-        Parameters result;
-        for (std::size_t k = 0; k < samples.grid.size(); ++k)
-            result.axes.push_back(median_chords(samples, k, closure(k)));
-        return result;
-    }
-    ShapeOptions shape = options.shape;
-    shape.knots.clear();
-    shape.control_points = samples.shape();
-    return choose_parameters(samples, shape, plan_axes(samples, shape));
+Parameters robust_parameters(const Problem& problem) {
+    const Samples& samples = problem.samples;
+    const ShapeOptions& shape = problem.options.shape;
+    const bool even =
+        shape.parametrization == Parametrization::uniform || samples.spacing == Spacing::even;
+    if (shape.parameters || even) return problem.parameters;
+    const std::vector<Closure>& closures = problem.axes.closures;
+    if (samples.grid.empty()) return {{bounded_chords(samples.points, closures[0])}, {}};
+    Parameters result;
+    for (std::size_t k = 0; k < samples.grid.size(); ++k)
+        result.axes.push_back(median_chords(samples, k, closures[k]));
+    return result;
 }
 
-std::vector<KnotVector> robust_knots(const Samples& samples, const Parameters& parameters,
-                                     const FitOptions& options) {
-    const std::vector<int> degree = degrees_per_axis(options.shape, parameters.axis_count());
-    std::vector<Closure> closures = options.shape.closures;
-    if (closures.size() == 1) closures.resize(degree.size(), closures[0]);
+std::vector<KnotVector> robust_knots(const Problem& problem, const Parameters& parameters) {
+    const Samples& samples = problem.samples;
+    const std::vector<int>& degree = problem.axes.degree;
+    const std::vector<Closure>& closures = problem.axes.closures;
     std::vector<KnotVector> axes;
     for (std::size_t k = 0; k < degree.size(); ++k) {
         const Index least = 2 * degree[k] + 1;
@@ -129,8 +120,7 @@ std::vector<KnotVector> robust_knots(const Samples& samples, const Parameters& p
                                          closures[k]));
             continue;
         }
-        std::vector<double> t = parameters.axes[k]; // distinct: runs of one value count once
-        t.erase(std::unique(t.begin(), t.end()), t.end());
+        const std::vector<double> t = without_repeats(parameters.axes[k]);
         const auto m = static_cast<Index>(t.size());
         const Index n = std::min(m, std::max(least, degree.size() == 1 ? m / 3 : m / 2));
         axes.push_back(knots_from_parameters(t, degree[k], n, closures[k]));

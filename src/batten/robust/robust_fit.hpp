@@ -1,17 +1,16 @@
 #pragma once
 
-#include <batten/problem/options.hpp>
+#include <batten/problem/problem.hpp>
 
 namespace batten {
 
 /// Parameters that samples far off do not stretch: bounded chords of a sequence, medians over a
 /// grid's rows; those given, where the options give them.
-Parameters robust_parameters(const Samples& samples, const FitOptions& options);
+Parameters robust_parameters(const Problem& problem);
 
 /// Half as many control points as samples along each axis of a grid, a third otherwise, evenly
 /// among them.
-std::vector<KnotVector> robust_knots(const Samples& samples, const Parameters& parameters,
-                                     const FitOptions& options);
+std::vector<KnotVector> robust_knots(const Problem& problem, const Parameters& parameters);
 
 /// The robust fit to all samples: the reach of Tukey's loss shrinks from the largest residual to
 /// 4.685 times their scale, so that the farthest let go first and what they pulled along falls

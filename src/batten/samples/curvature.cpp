@@ -1,5 +1,7 @@
 #include <batten/samples/curvature.hpp>
 
+#include <batten/core/vectors.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,26 +9,12 @@ namespace batten {
 
 namespace {
 
-using Vector = std::vector<double>;
-
-double dot(const Vector& a, const Vector& b) {
-    double sum = 0;
-    for (std::size_t d = 0; d < a.size(); ++d) sum += a[d] * b[d];
-    return sum;
-}
-
-Vector difference(std::span<const double> a, std::span<const double> b) {
-    Vector r(a.size());
-    for (std::size_t d = 0; d < r.size(); ++d) r[d] = a[d] - b[d];
-    return r;
-}
-
 /// Distance of p from the line through a and b.
 double off_line(std::span<const double> p, std::span<const double> a, std::span<const double> b) {
-    const Vector ab = difference(b, a);
-    const Vector ap = difference(p, a);
+    const std::vector<double> ab = difference(b, a);
+    const std::vector<double> ap = difference(p, a);
     const double length = dot(ab, ab);
-    if (length == 0) return std::sqrt(dot(ap, ap));
+    if (length == 0) return norm(ap);
     const double along = dot(ap, ab);
     return std::sqrt(std::max(0.0, dot(ap, ap) - along * along / length));
 }
@@ -67,11 +55,11 @@ PointSet smoothed(const Points& sequence, Index widest) {
 std::vector<double> discrete_curvature(const Points& sequence, Index widest) {
     const PointSet p = smoothed(sequence, widest);
     const Index m = p.size();
-    Vector curvature(static_cast<std::size_t>(m));
+    std::vector<double> curvature(static_cast<std::size_t>(m));
     for (Index j = 1; j + 1 < m; ++j) {
-        Vector first = difference(p[j + 1], p[j - 1]);
+        std::vector<double> first = difference(p[j + 1], p[j - 1]);
         for (double& x : first) x /= 2;
-        Vector second(first.size());
+        std::vector<double> second(first.size());
         for (std::size_t d = 0; d < second.size(); ++d)
             second[d] = p[j + 1][d] - 2 * p[j][d] + p[j - 1][d];
         // |a x b|^2 = |a|^2 |b|^2 - (a.b)^2 in any dimension

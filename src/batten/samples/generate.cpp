@@ -2,6 +2,7 @@
 
 #include <batten/core/names.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,6 +21,17 @@ double evenly(Index i, Index count, double a, double b) {
 
 Samples curve(PointSet points) {
     return {.points = std::move(points)};
+}
+
+/// The points that `point_at` has for each place of the grid.
+template <class PointAt>
+Samples grid_in_space(const std::vector<Index>& size, PointAt point_at) {
+    const GridIndex grid(size);
+    PointSet points(grid.size(), 3);
+    grid.for_each([&](const GridIndex::Place& place, Index i) {
+        std::ranges::copy(point_at(place), points[i].begin());
+    });
+    return {.points = std::move(points), .grid = size};
 }
 
 /// r = sin(theta / 4), theta uniform on [0, 8 pi]: [HuangWang2020, Example 3].
@@ -118,47 +130,30 @@ double peaks_height(double x, double y) {
 
 /// The "peaks" surface over [-3, 3] x [-4, 4].
 Samples peaks(std::vector<Index> size) {
-    PointSet points(size[0] * size[1], 3);
-    for (Index i = 0; i < size[0]; ++i)
-        for (Index j = 0; j < size[1]; ++j) {
-            const double x = evenly(i, size[0], -3, 3);
-            const double y = evenly(j, size[1], -4, 4);
-            const Index k = i * size[1] + j;
-            points(k, 0) = x;
-            points(k, 1) = y;
-            points(k, 2) = peaks_height(x, y);
-        }
-    return {.points = std::move(points), .grid = size};
+    return grid_in_space(size, [&](const GridIndex::Place& place) {
+        const double x = evenly(place[0], size[0], -3, 3);
+        const double y = evenly(place[1], size[1], -4, 4);
+        return std::array{x, y, peaks_height(x, y)};
+    });
 }
 
 Samples torus(std::vector<Index> size) {
-    PointSet points(size[0] * size[1], 3);
-    for (Index i = 0; i < size[0]; ++i)
-        for (Index j = 0; j < size[1]; ++j) {
-            const double u = 2 * pi * static_cast<double>(i) / static_cast<double>(size[0]);
-            const double v = 2 * pi * static_cast<double>(j) / static_cast<double>(size[1]);
-            const Index k = i * size[1] + j;
-            points(k, 0) = (3 + std::cos(v)) * std::cos(u);
-            points(k, 1) = (3 + std::cos(v)) * std::sin(u);
-            points(k, 2) = std::sin(v);
-        }
-    return {.points = std::move(points), .grid = size};
+    return grid_in_space(size, [&](const GridIndex::Place& place) {
+        const double u = 2 * pi * static_cast<double>(place[0]) / static_cast<double>(size[0]);
+        const double v = 2 * pi * static_cast<double>(place[1]) / static_cast<double>(size[1]);
+        const double radius = 3 + std::cos(v);
+        return std::array{radius * std::cos(u), radius * std::sin(u), std::sin(v)};
+    });
 }
 
 /// A block bent and swollen: a volume with curved faces.
 Samples bent_block(std::vector<Index> size) {
-    PointSet points(size[0] * size[1] * size[2], 3);
-    Index at = 0;
-    for (Index i = 0; i < size[0]; ++i)
-        for (Index j = 0; j < size[1]; ++j)
-            for (Index k = 0; k < size[2]; ++k, ++at) {
-                const double angle = evenly(i, size[0], 0, pi / 2);
-                const double radius = evenly(j, size[1], 2, 3) + 0.2 * std::sin(4 * angle);
-                points(at, 0) = radius * std::cos(angle);
-                points(at, 1) = radius * std::sin(angle);
-                points(at, 2) = evenly(k, size[2], 0, 1) * (1 + 0.3 * std::sin(2 * angle));
-            }
-    return {.points = std::move(points), .grid = size};
+    return grid_in_space(size, [&](const GridIndex::Place& place) {
+        const double angle = evenly(place[0], size[0], 0, pi / 2);
+        const double radius = evenly(place[1], size[1], 2, 3) + 0.2 * std::sin(4 * angle);
+        return std::array{radius * std::cos(angle), radius * std::sin(angle),
+                          evenly(place[2], size[2], 0, 1) * (1 + 0.3 * std::sin(2 * angle))};
+    });
 }
 
 const std::vector<Generator>& table() {

@@ -12,7 +12,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-double noise_level(const Points& q) {
+double noise_bound(const Points& q) {
     if (q.size() < 5) return 0;
     double sum = 0;
     for (Index i = 0; i + 3 < q.size(); ++i)

@@ -10,11 +10,7 @@ namespace batten {
 
 namespace {
 
-constexpr Index chunk_size = 1 << 16;
-
-Index chunks_of(Index count) {
-    return (count + chunk_size - 1) / chunk_size;
-}
+constexpr Index block_size = 1 << 16;
 
 void check_shape(const Samples& samples) {
     if (samples.size() == 0) throw InvalidInput("samples: there are none");
@@ -24,26 +20,24 @@ void check_shape(const Samples& samples) {
     if (samples.grid.size() < 2 || samples.grid.size() > 3)
         throw InvalidInput(
             fmt::format("grid: {} axes given, 2 or 3 are possible", samples.grid.size()));
-    Index product = 1;
-    for (Index m : samples.grid) product *= m;
+    const Index product = GridIndex(samples.grid).size();
     if (product != samples.size())
         throw InvalidInput(fmt::format("grid: {} needs {} samples, got {}",
                                        fmt::join(samples.grid, "x"), product, samples.size()));
 }
 
 void check_finite(const Points& points) {
-    std::vector<Index> first_bad(static_cast<std::size_t>(chunks_of(points.size())), -1);
-    for_each_chunk(chunks_of(points.size()), [&](Index chunk) {
-        const Index begin = chunk * chunk_size;
-        const Index end = std::min(points.size(), begin + chunk_size);
-        const double* x = points.data() + begin * points.dim();
-        const Index count = (end - begin) * points.dim();
+    std::vector<Index> first_bad(static_cast<std::size_t>(block_count(points.size(), block_size)),
+                                 -1);
+    for_each_block(points.size(), block_size, [&](const Block& block) {
+        const double* x = points.data() + block.begin * points.dim();
+        const Index count = (block.end - block.begin) * points.dim();
         double probe = 0; // stays zero while all are finite, and the loop vectorises
         for (Index k = 0; k < count; ++k) probe += x[k] * 0.0;
         if (probe == 0) return;
         for (Index k = 0; k < count; ++k)
             if (!std::isfinite(x[k])) {
-                first_bad[static_cast<std::size_t>(chunk)] = begin + k / points.dim();
+                first_bad[static_cast<std::size_t>(block.index)] = block.begin + k / points.dim();
                 return;
             }
     });
@@ -66,6 +60,11 @@ void check_weights(const Samples& samples) {
 
 } // namespace
 
+std::string_view to_string(SampleKind kind) {
+    constexpr std::string_view names[] = {"sequence", "grid", "cloud"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
 void check(const Samples& samples) {
     check_shape(samples);
     check_finite(samples.points);
@@ -74,32 +73,35 @@ void check(const Samples& samples) {
 
 Samples height_samples(const Points& heights, std::array<Index, 2> shape,
                        std::array<double, 2> spacing) {
-    if (heights.dim() != 1 || heights.size() != shape[0] * shape[1])
+    const GridIndex grid(shape);
+    if (heights.dim() != 1 || heights.size() != grid.size())
         throw InvalidInput(
             fmt::format("heights: {}x{} needs {} single numbers, got {} of dimension {}", shape[0],
-                        shape[1], shape[0] * shape[1], heights.size(), heights.dim()));
+                        shape[1], grid.size(), heights.size(), heights.dim()));
     for (double s : spacing)
         if (!(s > 0) || !std::isfinite(s))
             throw InvalidInput(fmt::format("spacing: {} must be positive and finite", s));
     PointSet points(heights.size(), 3);
-    for (Index i = 0; i < shape[0]; ++i)
-        for (Index j = 0; j < shape[1]; ++j) {
-            const Index k = i * shape[1] + j;
-            points(k, 0) = static_cast<double>(i) * spacing[0];
-            points(k, 1) = static_cast<double>(j) * spacing[1];
-            points(k, 2) = heights(k, 0);
-        }
-    return {.points = std::move(points), .grid = {shape[0], shape[1]}};
+    grid.for_each([&](const GridIndex::Place& place, Index i) {
+        for (std::size_t k = 0; k < 2; ++k)
+            points(i, static_cast<Index>(k)) = static_cast<double>(place[k]) * spacing[k];
+        points(i, 2) = heights(i, 0);
+    });
+    return {.points = std::move(points),
+            .grid = {shape[0], shape[1]},
+            .weights = {},
+            .order = Order::along_curve,
+            .spacing = Spacing::even};
 }
 
 std::vector<Index> end_samples(const Samples& samples) {
-    std::vector<Index> ends{0};
-    for (Index m : samples.shape()) {
-        std::vector<Index> next;
-        for (Index i : ends)
-            for (Index end : {Index{0}, m - 1}) next.push_back(i * m + end);
-        ends = std::move(next);
-    }
+    const GridIndex grid(samples.shape());
+    std::vector<Index> ends;
+    GridIndex(std::vector<Index>(grid.axis_count(), 2))
+        .for_each([&](GridIndex::Place corner, Index) {
+            for (std::size_t k = 0; k < grid.axis_count(); ++k) corner[k] *= grid.length(k) - 1;
+            ends.push_back(grid.at(corner));
+        });
     return ends;
 }
 
@@ -110,11 +112,11 @@ PointSet bounding_box(const Points& points) {
         box(0, d) = std::numeric_limits<double>::infinity();
         box(1, d) = -std::numeric_limits<double>::infinity();
     }
-    std::vector<PointSet> partial(static_cast<std::size_t>(chunks_of(points.size())), box);
-    for_each_chunk(chunks_of(points.size()), [&](Index chunk) {
-        PointSet& mine = partial[static_cast<std::size_t>(chunk)];
-        const Index end = std::min(points.size(), (chunk + 1) * chunk_size);
-        for (Index i = chunk * chunk_size; i < end; ++i)
+    std::vector<PointSet> partial(static_cast<std::size_t>(block_count(points.size(), block_size)),
+                                  box);
+    for_each_block(points.size(), block_size, [&](const Block& block) {
+        PointSet& mine = partial[static_cast<std::size_t>(block.index)];
+        for (Index i = block.begin; i < block.end; ++i)
             for (Index d = 0; d < dim; ++d) {
                 mine(0, d) = std::min(mine(0, d), points(i, d));
                 mine(1, d) = std::max(mine(1, d), points(i, d));

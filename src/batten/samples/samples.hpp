@@ -4,12 +4,34 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace batten {
 
-/// Data points as a user brings them: a sequence, or a grid of 2 or 3 axes, or (with given
-/// parameters) a cloud.
+/// What samples are.
+enum class SampleKind {
+    sequence, ///< points along a curve, in order
+    grid,     ///< points over 2 or 3 axes
+    cloud,    ///< points in no order
+};
+
+std::string_view to_string(SampleKind kind);
+
+/// How points without a grid follow each other.
+enum class Order {
+    along_curve,
+    none,   ///< as a scanner gives them: a cloud, seen in its best plane
+    ground, ///< a cloud over the ground, whose plane is that of the first two coordinates
+};
+
+/// How a grid's points lie.
+enum class Spacing {
+    free,
+    even, ///< a table of heights over an even grid: parameters are evenly spaced, too
+};
+
+/// Data points as a user brings them.
 struct Samples {
     /// (m x dim), dim 1 to 16; of a grid row-major, last axis fastest.
     Points points{};
@@ -17,9 +39,16 @@ struct Samples {
     std::vector<Index> grid{};
     /// One positive weight per sample, or empty when all are one.
     std::vector<double> weights{};
+    Order order = Order::along_curve;
+    Spacing spacing = Spacing::free;
     /// What was done to the data on the way in, one sentence each; shown in the report.
     std::vector<std::string> notes{};
 
+    SampleKind kind() const {
+        return !grid.empty()                 ? SampleKind::grid
+               : order == Order::along_curve ? SampleKind::sequence
+                                             : SampleKind::cloud;
+    }
     Index size() const { return points.size(); }
     Index dim() const { return points.dim(); }
     Index axis_count() const { return grid.empty() ? 1 : static_cast<Index>(grid.size()); }

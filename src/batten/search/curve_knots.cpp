@@ -8,10 +8,10 @@
 namespace batten {
 
 std::vector<double> first_weights(const CurveTask& task) {
-    const double tightest = *std::min_element(task.tolerance.begin(), task.tolerance.end());
+    const double smallest = tightest(task);
     std::vector<double> weights;
     for (std::size_t i = 0; i < task.tolerance.size(); ++i) {
-        const double part = tightest / task.tolerance[i];
+        const double part = smallest / task.tolerance[i];
         weights.push_back(part * part *
                           (task.samples.weights.empty() ? 1.0 : task.samples.weights[i]));
     }

@@ -70,7 +70,7 @@ bool refine(const CurveTask& task, CurveTrial& trial, const std::vector<double>&
 
 /// Where the curve strays between two samples: knots there, until it does not, or as before when
 /// that does not help.
-void calm(const CurveTask& task, CurveTrial& trial, Index most) {
+void calm(const CurveTask& task, CurveTrial& trial, Index most, ClosestSeen& closest) {
     constexpr int most_tries = 12;
     CurveTrial attempt = trial;
     for (int tries = 0; tries < most_tries; ++tries) {
@@ -94,10 +94,12 @@ void calm(const CurveTask& task, CurveTrial& trial, Index most) {
         attempt.parameters = task.parameters;
         attempt.weights = first_weights(task);
         if (!settle(task, attempt, 6, KnotShift::none)) {
+            closest.see(task, attempt);
             if (!refine(task, attempt, knots_where_the_error_is(task, attempt), most)) return;
             settle(task, attempt, 6, KnotShift::none);
-            if (attempt.worst > 1) return;
         }
+        closest.see(task, attempt);
+        if (attempt.worst > 1) return;
     }
 }
 
@@ -129,7 +131,8 @@ KnotVector first_knots(const CurveTask& task) {
 }
 
 /// Refines until the tolerance is met, or the round that came nearest.
-CurveTrial refine_by(const Refinement& way, const CurveTask& task, Index most) {
+CurveTrial refine_by(const Refinement& way, const CurveTask& task, Index most,
+                     ClosestSeen& closest) {
     constexpr int most_rounds = 60;
     CurveTrial trial;
     trial.knots = first_knots(task);
@@ -143,6 +146,7 @@ CurveTrial refine_by(const Refinement& way, const CurveTask& task, Index most) {
         if (way.from == Refinement::From::samples) trial.parameters = task.parameters;
         const bool met = settle(task, trial, way.rounds, KnotShift::none);
         if (trial.worst < best.worst) best = trial;
+        closest.see(task, trial);
         if (met) break;
         if (!std::isfinite(trial.worst)) {
             const std::vector<double> marked = trial.ratio;
@@ -158,6 +162,7 @@ CurveTrial refine_by(const Refinement& way, const CurveTask& task, Index most) {
     }
     if (std::isfinite(best.worst) && best.worst > 1)
         settle(task, best, 3 * trial_rounds, KnotShift::allowed);
+    closest.see(task, best);
     return best;
 }
 
@@ -173,9 +178,9 @@ CurveWithin refined(const CurveTask& task, Index most) {
                                   {From::last_round, trial_rounds, 0},
                                   {From::samples, trial_rounds, 0.5},
                                   {From::last_round, 6, 0.5}}) {
-        CurveTrial trial = refine_by(way, task, most);
+        CurveTrial trial = refine_by(way, task, most, result.closest);
         const bool met = trial.worst <= 1;
-        if (met) calm(task, trial, most);
+        if (met) calm(task, trial, most, result.closest);
         const double strays = met ? between(task, trial) : std::numeric_limits<double>::infinity();
         const bool better = met != result.met ? met
                             : met             ? strays < least_straying

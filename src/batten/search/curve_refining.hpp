@@ -1,6 +1,6 @@
 #pragma once
 
-#include <batten/search/curve_trial.hpp>
+#include <batten/search/curve_closest.hpp>
 
 #include <string>
 #include <utility>
@@ -12,6 +12,7 @@ namespace batten {
 struct CurveWithin {
     CurveTrial trial;
     bool met = false;
+    ClosestSeen closest; ///< on the way there
     std::vector<std::pair<std::string, Index>> stages;
 };
 

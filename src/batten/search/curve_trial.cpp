@@ -42,12 +42,6 @@ void mark_held(const CurveTask& task, CurveTrial& trial) {
 
 constexpr double misshapen = 1.25; // stands for a distance that is not reached
 
-/// Whether the control polygon bends no more often than it may.
-bool shape_kept(const CurveTask& task, const CurveTrial& trial) {
-    return task.most_inflections < 0 ||
-           inflection_count(trial.control, task.closure) <= task.most_inflections;
-}
-
 /// One Gauss-Newton step of each sample's parameter towards its closest point, kept in order.
 void correct_parameters(const CurveTask& task, const CurvePieces& pieces, CurveTrial& trial) {
     const std::vector<double> old = trial.parameters;
@@ -173,6 +167,11 @@ bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shif
     else
         trial.worst = best.worst;
     return trial.worst <= 1;
+}
+
+bool shape_kept(const CurveTask& task, const CurveTrial& trial) {
+    return task.most_inflections < 0 ||
+           inflection_count(trial.control, task.closure) <= task.most_inflections;
 }
 
 Spline spline_of(const CurveTrial& trial) {

@@ -4,6 +4,7 @@
 #include <batten/spline/spline.hpp>
 #include <batten/system/constraints.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -35,9 +36,16 @@ struct CurveTask {
     /// Greatest part of what is allowed between samples (measure/between_samples.hpp) that a
     /// thinner curve may use.
     double between = 1;
+    /// FitOptions::unit, for words.
+    double unit = 1;
     /// Asked every round; true ends the search with Cancelled.
     std::function<bool()> cancelled{};
 };
+
+/// The smallest of its tolerances.
+inline double tightest(const CurveTask& task) {
+    return *std::min_element(task.tolerance.begin(), task.tolerance.end());
+}
 
 /// A curve on the way: knots, parameters and weights of the samples, and how far it is from its
 /// goal.
@@ -60,6 +68,9 @@ enum class KnotShift { none, allowed };
 /// within tolerance. Leaves the best round's state. Returns whether the tolerance is met. Throws
 /// SolverError when the samples do not determine the control points.
 bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift);
+
+/// Whether the control polygon bends no more often than it may.
+bool shape_kept(const CurveTask& task, const CurveTrial& trial);
 
 /// The trial as a spline.
 Spline spline_of(const CurveTrial& trial);

@@ -1,6 +1,7 @@
 #include <batten/search/curve_verdict.hpp>
 
 #include <batten/measure/between_samples.hpp>
+#include <batten/measure/curve_deviation.hpp>
 #include <batten/measure/inflections.hpp>
 #include <batten/search/search.hpp>
 #include <batten/shape/polygon.hpp>
@@ -41,60 +42,63 @@ Index curve_inflections(const CurveTrial& trial, double height) {
     return visible_inflections(evaluate(spline_of(trial), t), height, trial.knots.closure());
 }
 
-bool near_interpolation(const CurveTask& task, const CurveWithin& found) {
-    return static_cast<double>(found.trial.knots.free_count()) >
-           smooth_part * static_cast<double>(task.samples.size());
-}
-
 namespace {
 
-/// Counts the inflections of curve and samples where they can be told.
-void count_inflections(const CurveTask& task, const CurveWithin& found, FitReport& report) {
-    if (!can_show_inflections(task)) return;
+/// The inflections of curve and samples, where they can be told.
+FitReport inflections_of(const CurveTask& task, const CurveTrial& trial) {
+    FitReport report;
+    report.tolerance = tightest(task);
+    if (!can_show_inflections(task)) return report;
     const double height = visible_height(task, report.tolerance);
-    report.curve_inflections = curve_inflections(found.trial, height);
+    report.curve_inflections = curve_inflections(trial, height);
     report.data_inflections = shown_inflections(task, height);
     if (task.most_inflections >= 0)
-        report.inflections = inflection_count(found.trial.control, task.closure);
+        report.inflections = inflection_count(trial.control, task.closure);
+    if (task.hold.preserve != Preserve::nothing) report.allowed_inflections = task.most_inflections;
+    return report;
+}
+
+double largest_deviation(const CurveTask& task, const CurveTrial& trial) {
+    const std::vector<double> off =
+        curve_deviations(spline_of(trial), task.samples.points, trial.parameters);
+    return *std::max_element(off.begin(), off.end());
+}
+
+std::string between_words(const BetweenSamples& between) {
+    if (between.good) return {};
+    if (between.loops > 0)
+        return fmt::format("; between samples {} and the next the curve has a loop",
+                           between.worst_sample);
+    return fmt::format("; between samples {} and the next the curve strays {:.2g} times as far as "
+                       "allowed",
+                       between.worst_sample, between.excess);
 }
 
 } // namespace
 
-void judge(const CurveTask& task, const CurveWithin& found, double noise,
-           const std::string& why_not, FitReport& report) {
-    bool met = report.termination == Termination::tolerance_met;
-    const BetweenSamples between = check_between(spline_of(found.trial), task.samples.points,
-                                                 found.trial.parameters, task.tolerance);
-    report.between_samples = between.excess;
-    count_inflections(task, found, report);
-    const bool wild = met && between.excess > wild_part;
-    if (wild) {
-        met = false;
-        report.termination = Termination::tolerance_not_met;
-    }
+FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allowed) {
+    const CurveWithin& found = outcome.found;
     const Index n = found.trial.knots.free_count();
     const Index m = task.samples.size();
-    const bool near = near_interpolation(task, found);
-    report.noise_level = near || !met ? noise : 0;
-    report.verdict = met    ? "met"
-                     : wild ? "not met: every sample is within, but the curve is wild between some"
-                            : why_not;
-    if (met && near)
-        report.verdict += fmt::format(", but it nearly interpolates: {} control points for {} "
-                                      "samples; noise level seen in them {:.3g}",
-                                      n, m, noise);
-    if (!between.good && (met || wild))
-        report.verdict +=
-            between.loops > 0
-                ? fmt::format("; between samples {} and the next the curve has a loop",
-                              between.worst_sample)
-                : fmt::format(
-                      "; between samples {} and the next the curve strays {:.2g} times as far as "
-                      "allowed",
-                      between.worst_sample, between.excess);
-    if (met && report.curve_inflections > report.data_inflections)
+    FitReport report = inflections_of(task, found.trial);
+    report.stages = found.stages;
+    report.termination = found.met ? Termination::tolerance_met : Termination::tolerance_not_met;
+    report.noise_level = outcome.noise;
+    const BetweenSamples between = check_reached(task, found.trial);
+    report.between_samples = between.excess;
+    report.verdict = found.met ? "met"
+                               : not_met_words({.why = outcome.why,
+                                                .allowed = allowed,
+                                                .noise = outcome.noise,
+                                                .control_points = n,
+                                                .deviation = largest_deviation(task, found.trial),
+                                                .unit = task.unit});
+    report.verdict += near_interpolation_words(n, m, outcome.noise, task.unit);
+    report.verdict += between_words(between);
+    if (found.met && report.curve_inflections > report.data_inflections)
         report.verdict += fmt::format("; the curve has {} inflections, the samples show {}",
                                       report.curve_inflections, report.data_inflections);
+    return report;
 }
 
 } // namespace batten

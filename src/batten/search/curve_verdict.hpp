@@ -2,6 +2,7 @@
 
 #include <batten/problem/report.hpp>
 #include <batten/search/curve_refining.hpp>
+#include <batten/search/verdict_words.hpp>
 
 namespace batten {
 
@@ -18,12 +19,15 @@ Index shown_inflections(const CurveTask& task, double height);
 /// The same of the planar curve.
 Index curve_inflections(const CurveTrial& trial, double height);
 
-/// Whether there are so many control points that the curve follows the samples' noise.
-bool near_interpolation(const CurveTask& task, const CurveWithin& found);
+/// What a search came to.
+struct CurveOutcome {
+    CurveWithin found;
+    double noise = 0;             ///< the samples' level; 0: unknown, or not asked
+    NotMet why = NotMet::crowded; ///< where it is not met
+};
 
-/// Enters the certificate and the verdict in the report, whose tolerance and termination stand:
-/// `noise` the samples' level, `why_not` the words for a tolerance that was not met.
-void judge(const CurveTask& task, const CurveWithin& found, double noise,
-           const std::string& why_not, FitReport& report);
+/// The account of a search: the certificate, the verdict and the ending; `allowed`: control points,
+/// where a limit was stated.
+FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allowed);
 
 } // namespace batten

@@ -1,7 +1,6 @@
 #include <batten/core/stopwatch.hpp>
 #include <batten/measure/between_samples.hpp>
 #include <batten/problem/held.hpp>
-#include <batten/problem/plan.hpp>
 #include <batten/search/grid_sizes.hpp>
 #include <batten/search/search.hpp>
 
@@ -31,26 +30,15 @@ std::vector<Index> most_per_axis(const Samples& samples, const Parameters& param
 
 } // namespace
 
-FitResult surface_within(const Samples& samples, const FitOptions& options,
-                         const std::vector<double>& tolerance) {
-    if (options.hold.preserve != Preserve::nothing)
-        throw InvalidInput("preserve: shape is kept for curves in the plane, not for a surface or "
-                           "volume");
-    FitResult result;
+Fitted surface_within(const Problem& problem) {
+    const Samples& samples = problem.samples;
+    const FitOptions& options = problem.options;
+    const AxisPlan& plan = problem.axes;
+    Fitted result;
     FitReport& report = result.report;
     Stopwatch watch;
-    ShapeOptions shape = options.shape;
-    shape.control_points.clear();
-    const bool cloud = shape.parameters && shape.parameters->is_scattered();
-    if (cloud)
-        shape.control_points.assign(1, samples.size());
-    else
-        for (Index m : samples.grid) shape.control_points.push_back(m);
-    const AxisPlan plan = plan_axes(samples, shape);
-    check_held(options.hold, samples, plan.degree, plan.closures);
-    result.parameters = parameters_for_boundaries(
-        samples, choose_parameters(samples, options.shape, plan), options.hold.boundaries);
-    report.seconds.emplace_back("parametrize", watch.lap());
+    result.parameters = problem.parameters;
+    const std::vector<double>& tolerance = problem.tolerance;
     const Index limit = options.tolerance.max_control_points;
     const double part =
         limit > 0 ? std::min(1.0, static_cast<double>(limit) / static_cast<double>(samples.size()))
@@ -67,8 +55,6 @@ FitResult surface_within(const Samples& samples, const FitOptions& options,
     const double share =
         static_cast<double>(found.stages.back().second) / static_cast<double>(samples.size());
     Index worst_cell = 0;
-    report.method = "tolerance";
-    report.method_reason = "the fewest control points per axis that hold it";
     report.tolerance = *std::min_element(tolerance.begin(), tolerance.end());
     report.termination = found.met ? Termination::tolerance_met : Termination::tolerance_not_met;
     result.spline = std::move(found.spline);

@@ -1,6 +1,7 @@
 #include <batten/search/spread_knots.hpp>
 
 #include <batten/basis/place_knots.hpp>
+#include <batten/core/distinct.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,36 +14,29 @@ std::vector<std::vector<double>> ascending(const Parameters& parameters) {
     for (Index i = 0; i < parameters.scattered.size(); ++i)
         for (std::size_t k = 0; k < result.size(); ++k)
             result[k].push_back(parameters.scattered(i, static_cast<Index>(k)));
-    for (auto& t : result) {
-        std::ranges::sort(t);
-        t.erase(std::unique(t.begin(), t.end()), t.end());
-    }
+    for (auto& t : result) t = distinct(std::move(t));
     return result;
 }
 
 Spread bend_spread(const Samples& samples, const std::vector<double>& t, std::size_t axis,
                    int degree) {
-    const std::vector<Index> shape = samples.shape();
+    std::vector<Index> shape = samples.shape();
     const Index m = shape[axis];
-    Index inner = samples.dim();
-    for (std::size_t k = axis + 1; k < shape.size(); ++k) inner *= shape[k];
-    const Index outer = samples.size() * samples.dim() / (m * inner);
+    shape.push_back(samples.dim());
     std::vector<double> bend(static_cast<std::size_t>(m), 0);
     std::vector<double> column(static_cast<std::size_t>(m));
-    for (Index o = 0; o < outer; ++o)
-        for (Index c = 0; c < inner; ++c) {
-            for (Index j = 0; j < m; ++j)
+    GridIndex(shape).for_each_strand(axis, [&](const GridIndex::Strand& strand) {
+        for (Index j = 0; j < m; ++j)
+            column[static_cast<std::size_t>(j)] = samples.points.data()[strand[j]];
+        for (int order = 0; order <= degree; ++order)
+            for (Index j = 0; j + order + 1 < m; ++j)
                 column[static_cast<std::size_t>(j)] =
-                    samples.points.data()[(o * m + j) * inner + c];
-            for (int order = 0; order <= degree; ++order)
-                for (Index j = 0; j + order + 1 < m; ++j)
-                    column[static_cast<std::size_t>(j)] = column[static_cast<std::size_t>(j + 1)] -
-                                                          column[static_cast<std::size_t>(j)];
-            for (Index j = 0; j + degree + 1 < m; ++j) {
-                double& to = bend[static_cast<std::size_t>(j + (degree + 1) / 2)];
-                to = std::max(to, std::abs(column[static_cast<std::size_t>(j)]));
-            }
+                    column[static_cast<std::size_t>(j + 1)] - column[static_cast<std::size_t>(j)];
+        for (Index j = 0; j + degree + 1 < m; ++j) {
+            double& to = bend[static_cast<std::size_t>(j + (degree + 1) / 2)];
+            to = std::max(to, std::abs(column[static_cast<std::size_t>(j)]));
         }
+    });
     for (int pass = 0; pass < 6; ++pass) {
         const std::vector<double> before = bend;
         for (std::size_t j = 1; j + 1 < bend.size(); ++j)

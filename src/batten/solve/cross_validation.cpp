@@ -3,7 +3,6 @@
 #include <batten/solve/banded_cholesky.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/system/roughness.hpp>
-#include <batten/system/stencil_system.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -75,10 +74,10 @@ PointSet probes(Index rows) {
     return result;
 }
 
-Quality scattered(const StencilSystem& system, double lambda, int order) {
-    StencilSystem smoothed = system;
-    smoothed.add_roughness(lambda, order);
-    const auto factor = factorize(smoothed);
+Quality as_a_whole(const NormalSystem& system, double lambda, int order) {
+    const auto smoothed = system.clone();
+    smoothed->add_roughness(lambda, order);
+    const auto factor = factorize(*smoothed);
     const PointSet control = factor->solve(system.rhs());
     PointSet image(control.size(), control.dim());
     system.apply(control, image);
@@ -117,15 +116,14 @@ double least(const std::function<double(double)>& value, double low, double high
 } // namespace
 
 Smoothing cross_validated(const NormalSystem& system, int order) {
-    const auto* cloud = dynamic_cast<const StencilSystem*>(&system);
+    const bool factored = !system.factors().empty();
     std::vector<BandedMatrix> rough;
     for (const KnotVector& axis : system.axes()) rough.push_back(roughness_matrix(axis, order));
     const auto m = static_cast<double>(system.sample_count());
     const auto quality = [&](double exponent) -> Quality {
         const double lambda = std::pow(10, exponent);
         try {
-            return cloud != nullptr ? scattered(*cloud, lambda, order)
-                                    : along_axes(system, rough, lambda);
+            return factored ? along_axes(system, rough, lambda) : as_a_whole(system, lambda, order);
         } catch (const SolverError&) { // too little to hold every control point
             return {std::numeric_limits<double>::infinity(), 0};
         }
@@ -133,7 +131,7 @@ Smoothing cross_validated(const NormalSystem& system, int order) {
     // of parameters over [0, 1] a derivative's square is at most about the samples' number to the
     // power of twice its order: below 1e-16 of the mean square nothing is left of it
     const double best = least([&](double exponent) { return score(quality(exponent), m); }, -16, 2,
-                              cloud != nullptr ? 12 : 36, cloud != nullptr ? 6 : 16);
+                              factored ? 36 : 12, factored ? 16 : 6);
     const Quality chosen = quality(best);
     if (!std::isfinite(chosen.squares))
         throw SolverError("no smoothing makes the samples determine every control point");

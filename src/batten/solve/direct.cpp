@@ -1,10 +1,10 @@
 #include <batten/solve/direct.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/solve/schur.hpp>
 
 #include <Eigen/Dense>
-#include <cmath>
 
 namespace batten {
 
@@ -33,16 +33,11 @@ std::vector<double> best_lengths(const Constraints& constraints, const PointSet&
     Eigen::MatrixXd matrix(count, count);
     Eigen::VectorXd right(count);
     Eigen::VectorXd least(count);
-    const auto dot = [](std::span<const double> a, std::span<const double> b) {
-        double sum = 0;
-        for (std::size_t d = 0; d < a.size(); ++d) sum += a[d] * b[d];
-        return sum;
-    };
     for (Index k = 0; k < count; ++k) {
         const auto direction = constraints.values()[row_of(k)];
         const auto derivative = free_values[row_of(k)];
         right[k] = dot(direction, pull[row_of(k)]);
-        least[k] = small_part * std::sqrt(dot(derivative, derivative));
+        least[k] = small_part * norm(derivative);
         for (Index l = 0; l < count; ++l)
             matrix(k, l) = inverse(row_of(k), l) * dot(direction, constraints.values()[row_of(l)]);
     }

@@ -1,5 +1,6 @@
 #include <batten/solve/extreme_eigenvalues.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/solve/banded_cholesky.hpp>
 
 #include <Eigen/Eigenvalues>
@@ -14,16 +15,6 @@ namespace {
 
 using Vector = std::vector<double>;
 
-double dot(const Vector& a, const Vector& b) {
-    double sum = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-    return sum;
-}
-
-void subtract(Vector& y, double factor, const Vector& x) {
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] -= factor * x[k];
-}
-
 /// M times a fixed random vector, normalised: a start without components in the null space.
 Vector start_vector(const VectorOperator& matrix, Index size) {
     std::mt19937_64 random(20041970);
@@ -32,7 +23,7 @@ Vector start_vector(const VectorOperator& matrix, Index size) {
     for (double& value : x) value = normal(random);
     Vector y(x.size());
     matrix(x, y);
-    const double length = std::sqrt(dot(y, y));
+    const double length = norm(y);
     if (length > 0)
         for (double& value : y) value /= length;
     return y;
@@ -79,8 +70,9 @@ ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tole
         matrix(q, w);
         alpha.push_back(dot(q, w));
         for (int pass = 0; pass < 2; ++pass) // twice is enough for full orthogonality
-            for (const Vector& other : basis) subtract(w, dot(other, w), other);
-        beta.push_back(std::sqrt(dot(w, w)));
+            for (const Vector& other : basis)
+                add_scaled(w.data(), -dot(other, w), other.data(), size);
+        beta.push_back(norm(w));
         const bool exhausted = beta.back() <= 1e-13 * std::abs(alpha[0]) || k + 1 == size;
         if (exhausted) beta.back() = 0;
         if (exhausted || k + 1 >= next_look) {
@@ -96,23 +88,29 @@ ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tole
 
 namespace {
 
+constexpr double rough = 1e-3;
+
+/// Roughly the largest eigenvalue of the inverse. Throws SolverError where there is none.
+double largest_of_inverse(const BandedMatrix& m) {
+    const BandedCholesky factor(m);
+    const VectorOperator inverse = [&](const Vector& in, Vector& out) {
+        out = in;
+        factor.solve(out.data(), {});
+    };
+    return lanczos(inverse, m.size(), rough, SpectrumEnds::largest).largest;
+}
+
 /// The eigenvalue beyond which `estimate` lies nothing, sharpened by Lanczos on the inverse of the
 /// matrix shifted past that end of the spectrum, the shift drawn closer: clustered ends separate.
 /// `sign` +1: the largest, -1: the smallest.
 double sharpened(const BandedMatrix& m, double estimate, int sign) {
-    constexpr double rough = 1e-3;
     for (double margin : {4 * rough, 1e-5, 1e-7, 1e-9}) {
         BandedMatrix shifted = m;
         const double shift = estimate * (1 + sign * margin);
         for (Index i = 0; i < m.size(); ++i)
             for (int k = 0; k <= m.bandwidth(); ++k)
                 shifted.at(i, k) = sign * ((k == 0 ? shift : 0.0) - m.at(i, k));
-        const BandedCholesky factor(shifted);
-        const VectorOperator inverse = [&](const Vector& in, Vector& out) {
-            out = in;
-            factor.solve(out.data(), {});
-        };
-        estimate = shift - sign / lanczos(inverse, m.size(), rough, SpectrumEnds::largest).largest;
+        estimate = shift - sign / largest_of_inverse(shifted);
     }
     return estimate;
 }
@@ -123,16 +121,10 @@ ExtremeEigenvalues banded_extremes(const BandedMatrix& m, double tolerance) {
     };
     constexpr double loose = 1e-5;
     if (tolerance > loose) return lanczos(forward, m.size(), tolerance);
-    ExtremeEigenvalues e = lanczos(forward, m.size(), 1e-3);
+    ExtremeEigenvalues e = lanczos(forward, m.size(), rough);
     e.largest = sharpened(m, e.largest, 1);
     try {
-        const BandedCholesky factor(m);
-        const VectorOperator inverse = [&](const Vector& in, Vector& out) {
-            out = in;
-            factor.solve(out.data(), {});
-        };
-        e.smallest =
-            sharpened(m, 1 / lanczos(inverse, m.size(), 1e-3, SpectrumEnds::largest).largest, -1);
+        e.smallest = sharpened(m, 1 / largest_of_inverse(m), -1);
     } catch (const SolverError&) { // singular: only the plain iteration, which starts in the range,
                                    // sees past the zeros
         e.smallest = lanczos(forward, m.size(), tolerance).smallest;

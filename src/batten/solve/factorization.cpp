@@ -1,7 +1,6 @@
 #include <batten/solve/factorization.hpp>
 
 #include <batten/solve/banded_cholesky.hpp>
-#include <batten/system/stencil_system.hpp>
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
@@ -37,7 +36,7 @@ class AxisFactorization : public Factorization {
 
 class SparseFactorization : public Factorization {
   public:
-    explicit SparseFactorization(const StencilSystem& system) {
+    explicit SparseFactorization(const NormalSystem& system) {
         std::vector<Eigen::Triplet<double>> entries;
         system.for_each_entry([&](Index i, Index j, double value) {
             if (i >= j) entries.emplace_back(static_cast<int>(i), static_cast<int>(j), value);
@@ -67,23 +66,14 @@ class SparseFactorization : public Factorization {
 std::unique_ptr<Factorization> factorize(const NormalSystem& system) {
     const auto factors = system.factors();
     if (!factors.empty()) return std::make_unique<AxisFactorization>(factors);
-    return std::make_unique<SparseFactorization>(dynamic_cast<const StencilSystem&>(system));
+    return std::make_unique<SparseFactorization>(system);
 }
 
 std::unique_ptr<Factorization> factorize_axes(const NormalSystem& system) {
-    const auto* scattered = dynamic_cast<const StencilSystem*>(&system);
-    if (scattered == nullptr) return nullptr;
-    std::vector<BandedMatrix> grams = scattered->axis_grams();
-    // the product must come near A^T D A in scale, too: all but one axis are divided by the total
-    // weight
+    const std::vector<BandedMatrix> nearby = system.nearby_factors();
+    if (nearby.empty()) return nullptr;
     std::vector<const BandedMatrix*> factors;
-    for (std::size_t k = 0; k < grams.size(); ++k) {
-        if (k > 0)
-            for (Index i = 0; i < grams[k].size(); ++i)
-                for (int b = 0; b <= grams[k].bandwidth(); ++b)
-                    grams[k].at(i, b) /= scattered->total_weight();
-        factors.push_back(&grams[k]);
-    }
+    for (const BandedMatrix& factor : nearby) factors.push_back(&factor);
     try {
         return std::make_unique<AxisFactorization>(factors);
     } catch (const SolverError&) {

@@ -17,13 +17,12 @@ class Factorization {
     virtual PointSet solve(PointSet b) const = 0;
 };
 
-/// Banded Cholesky axis by axis where the system has factors, sparse Cholesky for scattered
-/// samples. Throws SolverError when the samples do not determine every control point.
+/// Banded Cholesky axis by axis where the system has factors, else sparse Cholesky of its entries.
+/// Throws SolverError when the samples do not determine every control point.
 std::unique_ptr<Factorization> factorize(const NormalSystem& system);
 
-/// Of a system of scattered samples: the Kronecker product of the axes' own matrices over the total
-/// weight, axis by axis, as an approximation. Null for other systems, or when an axis alone is
-/// singular.
+/// The Kronecker product of the system's nearby factors, axis by axis, as an approximation. Null
+/// where it has none, or when one of them is singular.
 std::unique_ptr<Factorization> factorize_axes(const NormalSystem& system);
 
 } // namespace batten

@@ -1,5 +1,6 @@
 #include <batten/solve/keep_shape.hpp>
 
+#include <batten/core/distinct.hpp>
 #include <batten/shape/polygon.hpp>
 #include <batten/solve/direct.hpp>
 #include <batten/solve/factorization.hpp>
@@ -142,8 +143,7 @@ void watch_wrong(const Turns& turns, const std::vector<int>& signs, std::vector<
         for (Index near : {k - 1, k, k + 1})
             if (near >= 0 && near < n) watched.push_back(near);
     }
-    std::ranges::sort(watched);
-    watched.erase(std::unique(watched.begin(), watched.end()), watched.end());
+    watched = distinct(std::move(watched));
 }
 
 /// One quadratic program: the best fit's control points moved so that the watched turns, linearised

@@ -1,5 +1,7 @@
 #include <batten/spline/curve_pieces.hpp>
 
+#include <batten/basis/active_functions.hpp>
+
 #include <algorithm>
 
 namespace batten {
@@ -9,16 +11,14 @@ CurvePieces::CurvePieces(const KnotVector& knots, const PointSet& control)
     coefficients_.resize((breaks_.size() - 1) * static_cast<std::size_t>((degree_ + 1) * dim_));
     double* out = coefficients_.data();
     for (std::size_t b = 0; b + 1 < breaks_.size(); ++b) {
-        const Index span = knots.span(breaks_[b]);
         double factorial = 1;
         for (int k = 0; k <= degree_; ++k, out += dim_) {
             if (k > 0) factorial *= k;
-            const BasisValues value = basis_derivatives(knots, span, breaks_[b], k);
-            for (int r = 0; r <= degree_; ++r) {
-                const Index at = (span - degree_ + r) % control.size();
+            const ActiveFunctions active = active_functions(knots, breaks_[b], Numbering::free, k);
+            for (int r = 0; r <= degree_; ++r)
                 for (Index d = 0; d < dim_; ++d)
-                    out[d] += value[static_cast<std::size_t>(r)] * control(at, d) / factorial;
-            }
+                    out[d] += active.value[static_cast<std::size_t>(r)] *
+                              control(active.index(r), d) / factorial;
         }
     }
 }

@@ -1,3 +1,5 @@
+#include <batten/basis/active_functions.hpp>
+#include <batten/core/vectors.hpp>
 #include <batten/spline/spline.hpp>
 
 #include <algorithm>
@@ -7,20 +9,7 @@ namespace batten {
 
 namespace {
 
-constexpr Index chunk_size = 4096;
-
-/// The B-splines that matter at one parameter of one axis.
-struct Local {
-    Index first;
-    BasisValues value;
-};
-
-Local local_basis(const KnotVector& knots, double t, int order) {
-    t = knots.wrapped(t);
-    const Index span = knots.span(t);
-    return {span - knots.degree(),
-            order == 0 ? basis_values(knots, span, t) : basis_derivatives(knots, span, t, order)};
-}
+constexpr Index block_size = 4096;
 
 int order_of(std::span<const int> orders, std::size_t axis) {
     return orders.empty() ? 0 : orders[axis];
@@ -34,21 +23,11 @@ void check_orders(const Spline& spline, std::span<const int> orders) {
         if (k < 0) throw InvalidInput(fmt::format("evaluate: derivative order {} is negative", k));
 }
 
-/// Adds sum over axes' B-splines, from `axis` on, of weight * control point.
-void accumulate(const Spline& spline, std::span<const Local> basis, std::size_t axis, Index row,
-                double weight, double* out) {
-    const KnotVector& knots = spline.axis(static_cast<Index>(axis));
-    const Local& local = basis[axis];
-    for (int r = 0; r <= knots.degree(); ++r) {
-        const Index at = row * knots.control_count() + local.first + r;
-        const double w = weight * local.value[static_cast<std::size_t>(r)];
-        if (axis + 1 < basis.size()) {
-            accumulate(spline, basis, axis + 1, at, w, out);
-        } else {
-            const auto control = spline.control_points()[at];
-            for (std::size_t d = 0; d < control.size(); ++d) out[d] += w * control[d];
-        }
-    }
+/// Adds the row of A at a parameter times the control points to `out`.
+void add_point(const ActiveRow& row, const PointSet& control, double* out) {
+    const Index dim = control.dim();
+    row.for_each_active(
+        [&](Index i, double value) { add_scaled(out, value, control.data() + i * dim, dim); });
 }
 
 } // namespace
@@ -59,11 +38,8 @@ std::vector<double> Spline::operator()(std::span<const double> parameter,
     if (static_cast<Index>(parameter.size()) != axis_count())
         throw InvalidInput(fmt::format("evaluate: {} parameters given for {} axes",
                                        parameter.size(), axis_count()));
-    std::array<Local, 3> basis{};
-    for (std::size_t a = 0; a < axes_.size(); ++a)
-        basis[a] = local_basis(axes_[a], parameter[a], order_of(orders, a));
     std::vector<double> point(static_cast<std::size_t>(dim()));
-    accumulate(*this, std::span(basis.data(), axes_.size()), 0, 0, 1.0, point.data());
+    add_point({axes_, parameter, Numbering::stored, orders}, control_, point.data());
     return point;
 }
 
@@ -72,17 +48,11 @@ PointSet evaluate(const Spline& spline, const Points& parameters, std::span<cons
     if (parameters.dim() != spline.axis_count())
         throw InvalidInput(fmt::format("evaluate: {} parameters per point given for {} axes",
                                        parameters.dim(), spline.axis_count()));
-    const auto axes = static_cast<std::size_t>(spline.axis_count());
     PointSet result(parameters.size(), spline.dim());
-    for_each_chunk((parameters.size() + chunk_size - 1) / chunk_size, [&](Index chunk) {
-        std::array<Local, 3> basis{};
-        const Index end = std::min(parameters.size(), (chunk + 1) * chunk_size);
-        for (Index i = chunk * chunk_size; i < end; ++i) {
-            for (std::size_t a = 0; a < axes; ++a)
-                basis[a] = local_basis(spline.axes()[a], parameters(i, static_cast<Index>(a)),
-                                       order_of(orders, a));
-            accumulate(spline, std::span(basis.data(), axes), 0, 0, 1.0, result[i].data());
-        }
+    for_each_block(parameters.size(), block_size, [&](const Block& block) {
+        for (Index i = block.begin; i < block.end; ++i)
+            add_point({spline.axes(), parameters[i], Numbering::stored, orders},
+                      spline.control_points(), result[i].data());
     });
     return result;
 }
@@ -103,18 +73,16 @@ PointSet evaluate_grid(const Spline& spline, const std::vector<std::vector<doubl
         const auto m = static_cast<Index>(axes[a].size());
         const Index outer = static_cast<Index>(values.size()) / (n * inner);
         std::vector<double> next(static_cast<std::size_t>(outer * m * inner));
-        std::vector<Local> basis;
-        for (double t : axes[a]) basis.push_back(local_basis(knots, t, order_of(orders, a)));
-        const Index rows = std::max<Index>(1, chunk_size / inner);
-        for_each_chunk((outer * m + rows - 1) / rows, [&](Index chunk) {
-            for (Index row = chunk * rows; row < std::min(outer * m, (chunk + 1) * rows); ++row) {
-                const Local& local = basis[static_cast<std::size_t>(row % m)];
-                double* out = next.data() + row * inner;
-                for (int r = 0; r <= knots.degree(); ++r) {
-                    const double w = local.value[static_cast<std::size_t>(r)];
-                    const double* in = values.data() + (row / m * n + local.first + r) * inner;
-                    for (Index k = 0; k < inner; ++k) out[k] += w * in[k];
-                }
+        std::vector<ActiveFunctions> active;
+        for (double t : axes[a])
+            active.push_back(active_functions(knots, t, Numbering::stored, order_of(orders, a)));
+        const Index rows = std::max<Index>(1, block_size / inner);
+        for_each_block(outer * m, rows, [&](const Block& block) {
+            for (Index row = block.begin; row < block.end; ++row) {
+                const ActiveFunctions& here = active[static_cast<std::size_t>(row % m)];
+                for (int r = 0; r <= here.degree; ++r)
+                    add_scaled(next.data() + row * inner, here.value[static_cast<std::size_t>(r)],
+                               values.data() + (row / m * n + here.index(r)) * inner, inner);
             }
         });
         values = std::move(next);

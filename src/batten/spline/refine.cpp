@@ -57,22 +57,19 @@ PointSet refine_strand(const KnotVector& old, const PointSet& control, const Kno
 
 Spline over_knots(const Spline& spline, Index axis, const KnotVector& refined) {
     const KnotVector& old = spline.axis(axis);
-    std::vector<Index> shape = spline.control_shape();
-    Index outer = 1;
-    Index inner = spline.dim();
-    for (Index a = 0; a < axis; ++a) outer *= shape[static_cast<std::size_t>(a)];
-    for (Index a = axis + 1; a < spline.axis_count(); ++a)
-        inner *= shape[static_cast<std::size_t>(a)];
-    const Index n = old.control_count();
+    const auto along = static_cast<std::size_t>(axis);
+    const GridIndex grid(spline.control_shape());
+    const Index inner = grid.stride(along) * spline.dim();
+    const Index values_of_block = old.control_count() * inner;
     std::vector<double> values;
-    for (Index o = 0; o < outer; ++o) {
-        const double* block = spline.control_points().data() + o * n * inner;
-        const PointSet strand(std::vector<double>(block, block + n * inner), inner);
+    for (Index k = 0; k < grid.blocks(along); ++k) {
+        const double* block = spline.control_points().data() + k * values_of_block;
+        const PointSet strand(std::vector<double>(block, block + values_of_block), inner);
         const PointSet fine = refine_strand(old, strand, refined);
         values.insert(values.end(), fine.values().begin(), fine.values().end());
     }
     std::vector<KnotVector> axes = spline.axes();
-    axes[static_cast<std::size_t>(axis)] = refined;
+    axes[along] = refined;
     return {std::move(axes), PointSet(std::move(values), spline.dim())};
 }
 

@@ -1,17 +1,12 @@
 #include <batten/spline/spline.hpp>
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace batten {
 
 namespace {
-
-Index product(const std::vector<Index>& shape) {
-    Index result = 1;
-    for (Index n : shape) result *= n;
-    return result;
-}
 
 std::vector<Index> stored_shape(std::span<const KnotVector> axes) {
     std::vector<Index> shape;
@@ -20,19 +15,12 @@ std::vector<Index> stored_shape(std::span<const KnotVector> axes) {
 }
 
 /// Copies the block of `to` shape out of `from`, wrapping each index into the source.
-PointSet copy_wrapped(const PointSet& source, const std::vector<Index>& from,
-                      const std::vector<Index>& to) {
-    PointSet result(product(to), source.dim());
-    std::vector<Index> at(to.size(), 0);
-    for (Index row = 0; row < result.size(); ++row) {
-        Index k = 0;
-        for (std::size_t a = 0; a < to.size(); ++a) k = k * from[a] + at[a] % from[a];
-        for (Index d = 0; d < source.dim(); ++d) result(row, d) = source(k, d);
-        for (std::size_t a = to.size(); a-- > 0;) {
-            if (++at[a] < to[a]) break;
-            at[a] = 0;
-        }
-    }
+PointSet copy_wrapped(const PointSet& source, const GridIndex& from, const GridIndex& to) {
+    PointSet result(to.size(), source.dim());
+    to.for_each([&](GridIndex::Place place, Index row) {
+        for (std::size_t k = 0; k < from.axis_count(); ++k) place[k] %= from.length(k);
+        std::ranges::copy(source[from.at(place)], result[row].begin());
+    });
     return result;
 }
 
@@ -48,17 +36,17 @@ Spline::Spline(std::vector<KnotVector> axes, PointSet control)
     : axes_(std::move(axes)), control_(std::move(control)) {
     if (axes_.empty() || axes_.size() > 3)
         throw InvalidInput(fmt::format("spline: {} axes given, 1 to 3 are possible", axes_.size()));
-    if (product(control_shape()) != control_.size())
+    if (GridIndex(control_shape()).size() != control_.size())
         throw InvalidInput(fmt::format("spline: {} control points given, the knots need {}",
                                        control_.size(), fmt::join(control_shape(), "x")));
 }
 
 Spline Spline::from_free(std::vector<KnotVector> axes, const PointSet& free_control) {
-    const std::vector<Index> from = free_shape(axes);
-    if (product(from) != free_control.size())
+    const GridIndex from(free_shape(axes));
+    if (from.size() != free_control.size())
         throw InvalidInput(fmt::format("spline: {} free control points given, the knots need {}",
-                                       free_control.size(), fmt::join(from, "x")));
-    PointSet control = copy_wrapped(free_control, from, stored_shape(axes));
+                                       free_control.size(), fmt::join(from.shape(), "x")));
+    PointSet control = copy_wrapped(free_control, from, GridIndex(stored_shape(axes)));
     return {std::move(axes), std::move(control)};
 }
 
@@ -67,7 +55,7 @@ std::vector<Index> Spline::control_shape() const {
 }
 
 PointSet Spline::free_control_points() const {
-    return copy_wrapped(control_, control_shape(), free_shape(axes_));
+    return copy_wrapped(control_, GridIndex(control_shape()), GridIndex(free_shape(axes_)));
 }
 
 } // namespace batten

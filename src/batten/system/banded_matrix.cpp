@@ -1,5 +1,7 @@
 #include <batten/system/banded_matrix.hpp>
 
+#include <batten/core/vectors.hpp>
+
 #include <algorithm>
 
 namespace batten {
@@ -10,14 +12,6 @@ BandedMatrix::BandedMatrix(Index size, int bandwidth, Closure closure)
       closure_(closure),
       values_(static_cast<std::size_t>(size * (bandwidth + 1))) {}
 
-namespace {
-
-void add_row(double* y, double factor, const double* x, Index count) {
-    for (Index k = 0; k < count; ++k) y[k] += factor * x[k];
-}
-
-} // namespace
-
 void BandedMatrix::apply(const double* x, double* y, AxisLayout layout) const {
     const Index inner = layout.inner;
     std::fill(y, y + layout.outer * size_ * inner, 0.0);
@@ -25,15 +19,15 @@ void BandedMatrix::apply(const double* x, double* y, AxisLayout layout) const {
         const double* in = x + o * size_ * inner;
         double* out = y + o * size_ * inner;
         for (Index i = 0; i < size_; ++i) {
-            add_row(out + i * inner, at(i, 0), in + i * inner, inner);
+            add_scaled(out + i * inner, at(i, 0), in + i * inner, inner);
             for (int k = 1; k <= bandwidth_; ++k) {
                 Index j = i + k;
                 if (j >= size_) {
                     if (closure_ == Closure::open) break;
                     j -= size_;
                 }
-                add_row(out + i * inner, at(i, k), in + j * inner, inner);
-                add_row(out + j * inner, at(i, k), in + i * inner, inner);
+                add_scaled(out + i * inner, at(i, k), in + j * inner, inner);
+                add_scaled(out + j * inner, at(i, k), in + i * inner, inner);
             }
         }
     });
@@ -47,6 +41,10 @@ std::vector<double> BandedMatrix::diagonal() const {
 
 void BandedMatrix::add(double factor, const BandedMatrix& other) {
     for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += factor * other.values_[k];
+}
+
+void BandedMatrix::divide(double divisor) {
+    for (double& value : values_) value /= divisor;
 }
 
 double BandedMatrix::total() const {

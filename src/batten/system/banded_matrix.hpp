@@ -1,5 +1,6 @@
 #pragma once
 
+#include <batten/basis/active_functions.hpp>
 #include <batten/core/core.hpp>
 
 #include <vector>
@@ -32,11 +33,34 @@ class BandedMatrix {
         return values_[static_cast<std::size_t>(i * (bandwidth_ + 1) + k)];
     }
 
+    /// Adds weight b b^T for the values b of active functions, counted as free.
+    void add_outer(double weight, const ActiveFunctions& b) {
+        for (int i = 0; i <= b.degree; ++i)
+            for (int j = i; j <= b.degree; ++j)
+                at(b.index(i), j - i) += weight * b.value[static_cast<std::size_t>(i)] *
+                                         b.value[static_cast<std::size_t>(j)];
+    }
+
+    /// Calls `visit(row, column, value)` for the entries of the band, those above the diagonal and
+    /// those below; on a short closed axis several may mean one place.
+    template <class Visit>
+    void for_each_entry(Visit visit) const {
+        for (Index i = 0; i < size_; ++i)
+            for (int k = 0; k <= bandwidth_; ++k) {
+                const Index j = i + k < size_ ? i + k : i + k - size_;
+                if (j < i && closure_ == Closure::open) break;
+                visit(i, j, at(i, k));
+                if (k > 0) visit(j, i, at(i, k));
+            }
+    }
+
     /// y = M x along one axis, x and y (outer x n x inner).
     void apply(const double* x, double* y, AxisLayout layout) const;
     std::vector<double> diagonal() const;
     /// Adds factor times a matrix of the same shape.
     void add(double factor, const BandedMatrix& other);
+    /// Divides all entries by a number.
+    void divide(double divisor);
     /// Sum of all entries.
     double total() const;
 

@@ -39,9 +39,8 @@ class ChunkPass {
                   std::vector<Lanes>(static_cast<std::size_t>((p + 1) * dim_))};
         for (Index i = 0; i < count;) {
             const double inside = knots_.wrapped(t[i]);
-            if (!(inside >= knots_.begin() && inside <= knots_.end()))
-                throw InvalidInput(fmt::format("parameter {} is outside the knots' domain [{}, {}]",
-                                               t[i], knots_.begin(), knots_.end()));
+            if (!knots_.contains(inside))
+                throw outside_domain(knots_, fmt::format("parameter {}", t[i]));
             const double shift = t[i] - inside; // whole periods of a closed axis
             const Index span = knots_.span(inside);
             const bool last = knots_[span + 1] == knots_.end() && !knots_.closed();
@@ -131,7 +130,7 @@ class ChunkPass {
 } // namespace
 
 BandedSystem::BandedSystem(const KnotVector& knots, std::vector<double> centre)
-    : NormalSystem({knots}, std::move(centre)),
+    : FactoredSystem({knots}, std::move(centre)),
       gram_(knots.free_count(), knots.degree(), knots.closure()) {}
 
 void BandedSystem::add(std::span<const double> parameters, const Points& points,
@@ -141,7 +140,7 @@ void BandedSystem::add(std::span<const double> parameters, const Points& points,
     const int p = knots.degree();
     const Index n = knots.free_count();
     const ChunkPass pass(knots, centre_);
-    const Index chunks = (points.size() + chunk_samples - 1) / chunk_samples;
+    const Index chunks = block_count(points.size(), chunk_samples);
     std::vector<ChunkSums> wave;
     for (Index first = 0; first < chunks; first += wave_chunks) {
         const Index count = std::min(wave_chunks, chunks - first);

@@ -57,7 +57,7 @@ ChebyshevMaps::ChebyshevMaps(const KnotVector& knots, Index span)
     // T_a T_b = (T_{a+b} + T_{|a-b|}) / 2
     for (int i = 0; i < n; ++i)
         for (int j = i; j < n; ++j) {
-            double* row = pairs_.data() + pair_row(i, j) * (2 * p_ + 1);
+            double* row = pairs_.data() + pair_row(i, j, p_) * (2 * p_ + 1);
             for (int a = 0; a < n; ++a)
                 for (int b = 0; b < n; ++b) {
                     const double half = coefficients(i)[a] * coefficients(j)[b] / 2;

@@ -6,6 +6,11 @@
 
 namespace batten {
 
+/// Position of the pair (i, j), i <= j, among those of 0 to the degree.
+inline Index pair_row(Index i, Index j, int degree) {
+    return i * (degree + 1) - i * (i - 1) / 2 + (j - i);
+}
+
 /// The B-splines on one knot span in the Chebyshev polynomials T_k of the span's own parameter s in
 /// [-1, 1].
 ///
@@ -19,7 +24,7 @@ class ChebyshevMaps {
     /// Value of pair (i, j), 0 <= i <= j <= p, from the moments sum T_0 ... sum T_2p (stride
     /// apart): sum of B_i B_j.
     double pair(int i, int j, const double* moments, Index stride = 1) const {
-        const double* row = pairs_.data() + pair_row(i, j) * (2 * p_ + 1);
+        const double* row = pairs_.data() + pair_row(i, j, p_) * (2 * p_ + 1);
         double sum = 0;
         for (int k = 0; k <= 2 * p_; ++k) sum += row[k] * moments[k * stride];
         return sum;
@@ -28,10 +33,8 @@ class ChebyshevMaps {
     const double* coefficients(int i) const { return values_.data() + i * (p_ + 1); }
     /// Coefficients of B_i B_j, i <= j, in T_0 ... T_2p.
     const double* pair_coefficients(int i, int j) const {
-        return pairs_.data() + pair_row(i, j) * (2 * p_ + 1);
+        return pairs_.data() + pair_row(i, j, p_) * (2 * p_ + 1);
     }
-    Index pair_row(int i, int j) const { return i * (p_ + 1) - i * (i - 1) / 2 + (j - i); }
-
     double middle() const { return middle_; }
     /// s = (t - middle) * scale.
     double scale() const { return scale_; }

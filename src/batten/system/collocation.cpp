@@ -1,9 +1,11 @@
 #include <batten/system/collocation.hpp>
 
+#include <batten/core/distinct.hpp>
+#include <batten/core/vectors.hpp>
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <type_traits>
 
 namespace batten {
 
@@ -14,16 +16,17 @@ Collocation::Collocation(const KnotVector& knots, std::span<const double> parame
     values_.resize(parameters.size() * width);
     for (std::size_t j = 0; j < parameters.size(); ++j) {
         const double t = knots.wrapped(parameters[j]);
-        if (!(t >= knots.begin() && t <= knots.end()))
-            throw InvalidInput(
-                fmt::format("parameter {} = {} is outside the knots' domain [{}, {}]", j, t,
-                            knots.begin(), knots.end()));
-        const Index span = knots.span(t);
-        first_[j] = span - degree_;
-        if (first_[j] >= columns_) first_[j] -= columns_;
-        std::copy_n(basis_values(knots, span, t).begin(), width,
-                    values_.begin() + static_cast<Index>(j * width));
+        if (!knots.contains(t)) throw outside_domain(knots, fmt::format("parameter {} = {}", j, t));
+        const ActiveFunctions active = active_functions(knots, t, Numbering::free);
+        first_[j] = active.first;
+        std::copy_n(active.value.begin(), width, values_.begin() + static_cast<Index>(j * width));
     }
+}
+
+ActiveFunctions Collocation::row(Index j) const {
+    ActiveFunctions result{first_[static_cast<std::size_t>(j)], columns_, degree_, {}};
+    std::copy_n(values_.begin() + j * (degree_ + 1), degree_ + 1, result.value.begin());
+    return result;
 }
 
 PointSet Collocation::apply(const PointSet& x) const {
@@ -34,36 +37,14 @@ PointSet Collocation::apply_transposed(const PointSet& y) const {
     return {apply_transposed_along(y.values(), y.dim()), y.dim()};
 }
 
-namespace {
-
-/// y += factor * x over a run that is often as short as a point: then its length is known to the
-/// compiler.
-inline void add_row(double* y, double factor, const double* x, Index count) {
-    const auto add = [&](auto length) {
-        for (Index k = 0; k < length; ++k) y[k] += factor * x[k];
-    };
-    switch (count) {
-    case 1:
-        return add(std::integral_constant<Index, 1>());
-    case 2:
-        return add(std::integral_constant<Index, 2>());
-    case 3:
-        return add(std::integral_constant<Index, 3>());
-    default:
-        return add(count);
-    }
-}
-
-} // namespace
-
 std::vector<double> Collocation::apply_along(const std::vector<double>& values, Index inner) const {
     const Index outer = static_cast<Index>(values.size()) / (columns_ * inner);
     std::vector<double> result(static_cast<std::size_t>(outer * rows() * inner));
     for_each_chunk(outer, [&](Index o) {
         for (Index j = 0; j < rows(); ++j)
             for (int r = 0; r <= degree_; ++r)
-                add_row(result.data() + (o * rows() + j) * inner, value(j, r),
-                        values.data() + (o * columns_ + column(j, r)) * inner, inner);
+                add_scaled(result.data() + (o * rows() + j) * inner, value(j, r),
+                           values.data() + (o * columns_ + column(j, r)) * inner, inner);
     });
     return result;
 }
@@ -89,7 +70,7 @@ void transpose_strand(const Collocation& a, const double* in, double* out) {
 void transpose_long_strand(const Collocation& a, const double* in, double* out, Index inner) {
     for (Index j = 0; j < a.rows(); ++j)
         for (int r = 0; r <= a.degree(); ++r)
-            add_row(out + a.column(j, r) * inner, a.value(j, r), in + j * inner, inner);
+            add_scaled(out + a.column(j, r) * inner, a.value(j, r), in + j * inner, inner);
 }
 
 } // namespace
@@ -186,16 +167,14 @@ std::string spans_without(const KnotVector& knots, const std::vector<double>& di
 std::optional<std::string> undetermined(const KnotVector& knots,
                                         std::span<const double> parameters) {
     if (!knots.closed() && first_unmatched(knots, parameters) < 0) return std::nullopt;
-    std::vector<double> distinct;
-    for (double t : parameters) distinct.push_back(knots.wrapped(t));
-    if (knots.closed()) {
-        for (double& t : distinct)
-            if (t == knots.end()) t = knots.begin();
-        std::ranges::sort(distinct);
+    std::vector<double> inside;
+    for (double t : parameters) {
+        inside.push_back(knots.wrapped(t));
+        if (knots.closed() && inside.back() == knots.end()) inside.back() = knots.begin();
     }
-    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-    if (knots.closed() && closed_matched(knots, distinct)) return std::nullopt;
-    return spans_without(knots, distinct);
+    inside = knots.closed() ? distinct(std::move(inside)) : without_repeats(std::move(inside));
+    if (knots.closed() && closed_matched(knots, inside)) return std::nullopt;
+    return spans_without(knots, inside);
 }
 
 } // namespace batten

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <batten/basis/basis_functions.hpp>
+#include <batten/basis/active_functions.hpp>
 #include <batten/core/points.hpp>
 
 #include <optional>
@@ -23,6 +23,8 @@ class Collocation {
         const Index c = first_[static_cast<std::size_t>(j)] + r;
         return c < columns_ ? c : c - columns_;
     }
+    /// Row j as the active functions that it holds.
+    ActiveFunctions row(Index j) const;
     /// Entry r (0 to degree) of row j.
     double value(Index j, int r) const {
         return values_[static_cast<std::size_t>(j * (degree_ + 1) + r)];

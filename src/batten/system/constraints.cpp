@@ -1,5 +1,8 @@
 #include <batten/system/constraints.hpp>
 
+#include <batten/basis/active_functions.hpp>
+#include <batten/core/vectors.hpp>
+
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -13,21 +16,11 @@ namespace batten {
 void Constraints::add(const std::vector<KnotVector>& axes, std::span<const double> parameter,
                       std::span<const int> orders, std::span<const double> value,
                       std::string name) {
-    std::vector<Entry> row{{0, 1.0}};
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-        const KnotVector& knots = axes[k];
-        const double t = knots.wrapped(parameter[k]);
-        const Index span = knots.span(t);
-        const BasisValues basis = basis_derivatives(knots, span, t, orders.empty() ? 0 : orders[k]);
-        std::vector<Entry> next;
-        for (const Entry& entry : row)
-            for (Index r = 0; r <= knots.degree(); ++r)
-                next.push_back({entry.control * knots.free_count() +
-                                    (span - knots.degree() + r) % knots.free_count(),
-                                entry.value * basis[static_cast<std::size_t>(r)]});
-        row = std::move(next);
-    }
-    std::erase_if(row, [](const Entry& entry) { return entry.value == 0; });
+    std::vector<Entry> row;
+    ActiveRow(axes, parameter, Numbering::free, orders)
+        .for_each_active([&](Index control, double entry) {
+            if (entry != 0) row.push_back({control, entry});
+        });
     const bool position = std::ranges::all_of(orders, [](int order) { return order == 0; });
     add_row(std::move(row), position ? 1 : 0, value, std::move(name));
 }
@@ -36,10 +29,9 @@ void Constraints::add_direction(const std::vector<KnotVector>& axes,
                                 std::span<const double> parameter, std::span<const int> orders,
                                 std::span<const double> direction, std::string name) {
     directions_.push_back(size());
-    double length = 0;
-    for (double x : direction) length += x * x;
+    const double length = norm(direction);
     std::vector<double> unit(direction.begin(), direction.end());
-    for (double& x : unit) x /= std::sqrt(length);
+    for (double& x : unit) x /= length;
     add(axes, parameter, orders, unit, std::move(name));
 }
 
@@ -158,20 +150,6 @@ std::string Constraints::clash_words(std::span<const double> how, Index last) co
                                 free_rows[0].second * free_rows[1].second < 0;
     if (gap <= 1e-9 * scale && (free_rows.empty() || same_direction)) return {};
     return fmt::format("constraints contradict each other: {}", fmt::join(involved, ", "));
-}
-
-std::vector<double> parameter_of(const Parameters& parameters, Index i) {
-    if (parameters.is_scattered()) {
-        const auto row = parameters.scattered[i];
-        return {row.begin(), row.end()};
-    }
-    std::vector<double> t(parameters.axes.size());
-    for (std::size_t k = t.size(); k-- > 0;) {
-        const auto m = static_cast<Index>(parameters.axes[k].size());
-        t[k] = parameters.axes[k][static_cast<std::size_t>(i % m)];
-        i /= m;
-    }
-    return t;
 }
 
 Constraints interpolate_samples(const std::vector<KnotVector>& axes, const Samples& samples,

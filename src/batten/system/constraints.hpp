@@ -72,7 +72,4 @@ class Constraints {
 Constraints interpolate_samples(const std::vector<KnotVector>& axes, const Samples& samples,
                                 const Parameters& parameters, const std::vector<Index>& indices);
 
-/// Parameter of sample `i`, one per axis.
-std::vector<double> parameter_of(const Parameters& parameters, Index i);
-
 } // namespace batten

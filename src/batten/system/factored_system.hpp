@@ -5,9 +5,18 @@
 
 namespace batten {
 
+/// A normal system whose matrix is the Kronecker product of one banded matrix per axis.
+class FactoredSystem : public NormalSystem {
+  public:
+    void for_each_entry(EntryVisitor visit) const override;
+
+  protected:
+    using NormalSystem::NormalSystem;
+};
+
 /// The normal system of a sequence: one banded matrix, built in one pass from the moments of each
 /// knot span.
-class BandedSystem : public NormalSystem {
+class BandedSystem : public FactoredSystem {
   public:
     BandedSystem(const KnotVector& knots, std::vector<double> centre);
 
@@ -17,6 +26,9 @@ class BandedSystem : public NormalSystem {
     void add(std::span<const double> parameters, const Points& points,
              std::span<const double> weights);
 
+    std::unique_ptr<NormalSystem> clone() const override {
+        return std::make_unique<BandedSystem>(*this);
+    }
     void apply(const PointSet& x, PointSet& y) const override;
     std::vector<double> diagonal() const override { return gram_.diagonal(); }
     std::vector<const BandedMatrix*> factors() const override { return {&gram_}; }
@@ -28,7 +40,7 @@ class BandedSystem : public NormalSystem {
 
 /// The normal system of a full unweighted grid of 2 or 3 axes: the Kronecker product of one banded
 /// matrix per axis.
-class KroneckerSystem : public NormalSystem {
+class KroneckerSystem : public FactoredSystem {
   public:
     /// `parameters` of the whole grid; samples follow through add().
     KroneckerSystem(std::vector<KnotVector> axes, std::vector<double> centre,
@@ -39,6 +51,9 @@ class KroneckerSystem : public NormalSystem {
     /// Completes the right-hand side once all slices are in.
     void finish();
 
+    std::unique_ptr<NormalSystem> clone() const override {
+        return std::make_unique<KroneckerSystem>(*this);
+    }
     void apply(const PointSet& x, PointSet& y) const override;
     std::vector<double> diagonal() const override;
     std::vector<const BandedMatrix*> factors() const override;

@@ -1,7 +1,7 @@
 #include <batten/system/factored_system.hpp>
 
+#include <batten/core/lane_vectors.hpp>
 #include <batten/core/vector_clones.hpp>
-#include <batten/system/moments.hpp>
 #include <batten/system/roughness.hpp>
 
 #include <algorithm>
@@ -11,21 +11,6 @@ namespace batten {
 namespace {
 
 constexpr Index tile_columns = 1536; // doubles of a slice that one task takes through all rows
-
-void add_gram_row(BandedMatrix& gram, const Collocation& a, Index j) {
-    for (int r = 0; r <= a.degree(); ++r)
-        for (int s = r; s <= a.degree(); ++s)
-            gram.at(a.column(j, r), s - r) += a.value(j, r) * a.value(j, s);
-}
-
-typedef double Vector __attribute__((
-    vector_size(64))); // NOLINT(modernize-use-using): GCC wants the attribute on a typedef
-
-inline __attribute__((always_inline)) Vector load(const double* x) {
-    Vector v;
-    __builtin_memcpy(&v, x, sizeof v);
-    return v;
-}
 
 /// Rows of one span over one tile of columns.
 struct TileRows {
@@ -42,10 +27,10 @@ struct TileRows {
 /// known.
 template <int known_terms, int wide>
 inline __attribute__((always_inline)) void add_strip(const TileRows& tile, Index at, double* sums,
-                                                     Index sums_stride, Vector& energy) {
+                                                     Index sums_stride, LaneVector& energy) {
     const int terms = known_terms > 0 ? known_terms : tile.terms;
-    Vector centre[wide];
-    Vector sum[(known_terms > 0 ? known_terms : max_degree + 1) * wide];
+    LaneVector centre[wide];
+    LaneVector sum[(known_terms > 0 ? known_terms : max_degree + 1) * wide];
     for (int v = 0; v < wide; ++v) centre[v] = load(tile.centre + at + v * lanes);
     for (int r = 0; r < terms; ++r)
         for (int v = 0; v < wide; ++v)
@@ -56,27 +41,26 @@ inline __attribute__((always_inline)) void add_strip(const TileRows& tile, Index
             __builtin_prefetch(row + tile.rows * tile.stride +
                                v * lanes); // the next span's rows lie pages apart: the hardware
                                            // does not see them coming
-            const Vector x = load(row + v * lanes) - centre[v];
+            const LaneVector x = load(row + v * lanes) - centre[v];
             energy += x * x;
             for (int r = 0; r < terms; ++r) sum[r * wide + v] += tile.weights[j * terms + r] * x;
         }
     }
     for (int r = 0; r < terms; ++r)
         for (int v = 0; v < wide; ++v)
-            __builtin_memcpy(sums + r * sums_stride + at + v * lanes, &sum[r * wide + v],
-                             sizeof(Vector));
+            store(sum[r * wide + v], sums + r * sums_stride + at + v * lanes);
 }
 
 template <int known_terms>
 inline __attribute__((always_inline)) void add_strips(const TileRows& tile, double* sums,
                                                       Index sums_stride, Lanes* energy) {
-    Vector e = load(energy->value.data());
+    LaneVector e = load(energy->value.data());
     Index k = 0;
     for (; k + 4 * lanes <= tile.count; k += 4 * lanes)
         add_strip<known_terms, 4>(tile, k, sums, sums_stride, e);
     for (; k + lanes <= tile.count; k += lanes)
         add_strip<known_terms, 1>(tile, k, sums, sums_stride, e);
-    __builtin_memcpy(energy->value.data(), &e, sizeof e);
+    store(e, energy->value.data());
     for (; k < tile.count; ++k)
         for (Index j = 0; j < tile.rows; ++j) {
             const double x = tile.first[j * tile.stride + k] - tile.centre[k];
@@ -99,12 +83,12 @@ void add_tile(const TileRows& tile, double* sums, Index sums_stride, Lanes* ener
 
 KroneckerSystem::KroneckerSystem(std::vector<KnotVector> axes, std::vector<double> centre,
                                  const Parameters& parameters)
-    : NormalSystem(std::move(axes), std::move(centre)), slice_values_(dim()) {
+    : FactoredSystem(std::move(axes), std::move(centre)), slice_values_(dim()) {
     for (std::size_t k = 0; k < axes_.size(); ++k) {
         collocations_.emplace_back(axes_[k], parameters.axes[k]);
         grams_.emplace_back(axes_[k].free_count(), axes_[k].degree(), axes_[k].closure());
         for (Index j = 0; j < collocations_[k].rows(); ++j)
-            add_gram_row(grams_[k], collocations_[k], j);
+            grams_[k].add_outer(1, collocations_[k].row(j));
         if (k > 0) slice_values_ *= collocations_[k].rows();
     }
     slices_sum_.resize(static_cast<std::size_t>(axes_[0].free_count() * slice_values_));
@@ -116,11 +100,10 @@ KroneckerSystem::KroneckerSystem(std::vector<KnotVector> axes, std::vector<doubl
 void KroneckerSystem::add(Index first, const Points& slices) {
     const Collocation& a = collocations_[0];
     const Index rows = slices.size() * dim() / slice_values_;
-    const Index tiles = (slice_values_ + tile_columns - 1) / tile_columns;
-    std::vector<Lanes> energies(static_cast<std::size_t>(tiles));
-    for_each_chunk(tiles, [&](Index t) {
-        const Index begin = t * tile_columns;
-        const Index count = std::min(tile_columns, slice_values_ - begin);
+    std::vector<Lanes> energies(static_cast<std::size_t>(block_count(slice_values_, tile_columns)));
+    for_each_block(slice_values_, tile_columns, [&](const Block& tile) {
+        const Index begin = tile.begin;
+        const Index count = tile.end - begin;
         double* sums = slices_sum_.data() + begin;
         std::vector<double> weights;
         for (Index j = 0; j < rows;) { // rows of one span share their columns
@@ -136,7 +119,7 @@ void KroneckerSystem::add(Index first, const Points& slices) {
                                  weights.data(),
                                  a.degree() + 1,
                                  count};
-            Lanes& energy = energies[static_cast<std::size_t>(t)];
+            Lanes& energy = energies[static_cast<std::size_t>(tile.index)];
             if (column + a.degree() < a.columns()) {
                 add_tile(group, sums + column * slice_values_, slice_values_, &energy);
                 continue;

@@ -1,6 +1,7 @@
 #include <batten/system/moments.hpp>
 
 #include <batten/basis/knot_vector.hpp>
+#include <batten/core/lane_vectors.hpp>
 #include <batten/core/vector_clones.hpp>
 
 #include <algorithm>
@@ -8,9 +9,6 @@
 namespace batten {
 
 namespace {
-
-typedef double Vector __attribute__((
-    vector_size(64))); // NOLINT(modernize-use-using): GCC wants the attribute on a typedef
 
 constexpr Index block = 128;
 constexpr Index most_dim = 16;
@@ -45,12 +43,6 @@ split_points_of(Index dim, const double* point, Index count, const double* centr
     }
 }
 
-inline __attribute__((always_inline)) Vector load(const double* x) {
-    Vector v;
-    __builtin_memcpy(&v, x, sizeof v);
-    return v;
-}
-
 /// Sums of one block, degree and dimension known to the compiler so that they stay in registers; 0:
 /// known only at run time.
 template <int known_degree, int known_dim>
@@ -63,18 +55,18 @@ inline __attribute__((always_inline)) void add_block(const Planes& planes, Index
     constexpr int value_room = known_degree > 0 && known_dim > 0
                                    ? (known_degree + 1) * known_dim
                                    : (max_degree + 1) * static_cast<int>(most_dim);
-    Vector m[moment_room];
-    Vector v[value_room];
+    LaneVector m[moment_room];
+    LaneVector v[value_room];
     for (int k = 0; k <= 2 * degree; ++k) m[k] = load(moments[k].value.data());
     for (Index k = 0; k < (degree + 1) * dim; ++k) v[k] = load(values[k].value.data());
-    Vector e = load(energy->value.data());
+    LaneVector e = load(energy->value.data());
     for (Index j = 0; j < padded; j += lanes) {
-        const Vector s = load(planes.s + j);
-        const Vector twice = s + s;
-        Vector before = load(planes.weight + j);
-        Vector now = before * s;
+        const LaneVector s = load(planes.s + j);
+        const LaneVector twice = s + s;
+        LaneVector before = load(planes.weight + j);
+        LaneVector now = before * s;
         for (Index d = 0; d < dim; ++d) {
-            const Vector x = load(planes.point[d] + j);
+            const LaneVector x = load(planes.point[d] + j);
             e += before * x * x;
         }
         m[0] += before;
@@ -83,16 +75,14 @@ inline __attribute__((always_inline)) void add_block(const Planes& planes, Index
             m[k] += now;
             if (k <= degree)
                 for (Index d = 0; d < dim; ++d) v[k * dim + d] += now * load(planes.point[d] + j);
-            const Vector next = twice * now - before;
+            const LaneVector next = twice * now - before;
             before = now;
             now = next;
         }
     }
-    for (int k = 0; k <= 2 * degree; ++k)
-        __builtin_memcpy(moments[k].value.data(), &m[k], sizeof m[k]);
-    for (Index k = 0; k < (degree + 1) * dim; ++k)
-        __builtin_memcpy(values[k].value.data(), &v[k], sizeof v[k]);
-    __builtin_memcpy(energy->value.data(), &e, sizeof e);
+    for (int k = 0; k <= 2 * degree; ++k) store(m[k], moments[k].value.data());
+    for (Index k = 0; k < (degree + 1) * dim; ++k) store(v[k], values[k].value.data());
+    store(e, energy->value.data());
 }
 
 } // namespace
@@ -137,24 +127,23 @@ void add_cell_moments(const CellSamples& samples, int p, int q, Lanes* moments, 
             for (Index k = 0; k < lanes; ++k) padded_row[place][k] = k < count ? plane[j + k] : 0;
             return load(padded_row[place]);
         };
-        const Vector s = row(samples.s, 0);
-        const Vector t = row(samples.t, 1);
-        Vector ts[room];
-        Vector tt[room];
+        const LaneVector s = row(samples.s, 0);
+        const LaneVector t = row(samples.t, 1);
+        LaneVector ts[room];
+        LaneVector tt[room];
         ts[0] = row(samples.weight, 2);
         ts[1] = ts[0] * s;
         tt[0] = s - s + 1.0;
         tt[1] = t;
         for (int k = 2; k <= 2 * p; ++k) ts[k] = (s + s) * ts[k - 1] - ts[k - 2];
         for (int k = 2; k <= 2 * q; ++k) tt[k] = (t + t) * tt[k - 1] - tt[k - 2];
-        const auto add = [](Lanes & to, const Vector& x) __attribute__((always_inline)) {
-            const Vector sum = load(to.value.data()) + x;
-            __builtin_memcpy(to.value.data(), &sum, sizeof sum);
+        const auto add = [](Lanes & to, const LaneVector& x) __attribute__((always_inline)) {
+            store(load(to.value.data()) + x, to.value.data());
         };
         for (int a = 0; a <= 2 * p; ++a)
             for (int b = 0; b <= 2 * q; ++b) add(moments[a * (2 * q + 1) + b], ts[a] * tt[b]);
         for (Index d = 0; d < samples.dim; ++d) {
-            const Vector x = row(samples.points + d * samples.stride, 2);
+            const LaneVector x = row(samples.points + d * samples.stride, 2);
             for (int a = 0; a <= p; ++a)
                 for (int b = 0; b <= q; ++b)
                     add(values[(a * (q + 1) + b) * samples.dim + d], ts[a] * tt[b] * x);

@@ -9,12 +9,6 @@ namespace batten {
 
 namespace {
 
-Index free_total(const std::vector<KnotVector>& axes) {
-    Index total = 1;
-    for (Index n : free_shape(axes)) total *= n;
-    return total;
-}
-
 PointSet shifted(const PointSet& control, const std::vector<double>& centre, double sign) {
     PointSet result = control;
     for (Index i = 0; i < result.size(); ++i)
@@ -28,7 +22,7 @@ PointSet shifted(const PointSet& control, const std::vector<double>& centre, dou
 NormalSystem::NormalSystem(std::vector<KnotVector> axes, std::vector<double> centre)
     : axes_(std::move(axes)),
       centre_(std::move(centre)),
-      rhs_(free_total(axes_), static_cast<Index>(centre_.size())) {}
+      rhs_(GridIndex(free_shape(axes_)).size(), static_cast<Index>(centre_.size())) {}
 
 PointSet NormalSystem::gradient(const PointSet& control) const {
     PointSet result(size(), dim());
@@ -45,25 +39,6 @@ double NormalSystem::energy(const PointSet& control) const {
     return -inner_product(control, sum);
 }
 
-namespace {
-
-/// The grid's parameters, one row per sample.
-PointSet scattered_parameters(const Parameters& parameters, Index count) {
-    PointSet rows(count, parameters.axis_count());
-    for (Index i = 0; i < count; ++i) {
-        Index rest = i;
-        for (Index k = parameters.axis_count(); k-- > 0;) {
-            const auto& t = parameters.axes[static_cast<std::size_t>(k)];
-            const auto m = static_cast<Index>(t.size());
-            rows(i, k) = t[static_cast<std::size_t>(rest % m)];
-            rest /= m;
-        }
-    }
-    return rows;
-}
-
-} // namespace
-
 std::unique_ptr<NormalSystem> assemble(const std::vector<KnotVector>& axes, const Samples& samples,
                                        const Parameters& parameters) {
     const auto origin = samples.points[0];
@@ -71,11 +46,10 @@ std::unique_ptr<NormalSystem> assemble(const std::vector<KnotVector>& axes, cons
     const bool weighted_grid = axes.size() > 1 && !samples.weights.empty();
     if (parameters.is_scattered() || weighted_grid) {
         auto system = std::make_unique<StencilSystem>(axes, centre);
-        const PointSet expanded = parameters.is_scattered()
-                                      ? PointSet()
-                                      : scattered_parameters(parameters, samples.size());
-        system->add(samples.points, parameters.is_scattered() ? parameters.scattered : expanded,
-                    samples.weights);
+        if (parameters.is_scattered())
+            system->add(samples.points, parameters.scattered, samples.weights);
+        else
+            system->add(samples.points, parameter_rows(parameters), samples.weights);
         return system;
     }
     if (axes.size() == 1) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <batten/core/function_ref.hpp>
 #include <batten/parametrize/parametrize.hpp>
 #include <batten/spline/spline.hpp>
 #include <batten/system/banded_matrix.hpp>
@@ -16,8 +17,13 @@ namespace batten {
 /// nothing else.
 class NormalSystem {
   public:
+    /// What is called with the row, column and value of an entry.
+    using EntryVisitor = FunctionRef<void(Index row, Index column, double value)>;
+
     virtual ~NormalSystem() = default;
     NormalSystem& operator=(const NormalSystem&) = delete;
+    /// An independent copy, to add roughness to.
+    virtual std::unique_ptr<NormalSystem> clone() const = 0;
 
     /// Free control points N of the spline.
     Index size() const { return rhs_.size(); }
@@ -31,9 +37,15 @@ class NormalSystem {
     virtual void apply(const PointSet& x, PointSet& y) const = 0;
     /// Diagonal of A^T D A.
     virtual std::vector<double> diagonal() const = 0;
-    /// The banded factors whose Kronecker product A^T D A is, one per axis; none for scattered
-    /// samples.
+    /// Calls `visit` for the entries of A^T D A that may differ from zero, those above the diagonal
+    /// and those below; entries told for one place add up to the matrix's.
+    virtual void for_each_entry(EntryVisitor visit) const = 0;
+    /// The banded factors whose Kronecker product A^T D A is, one per axis; none where it is not
+    /// such a product.
     virtual std::vector<const BandedMatrix*> factors() const { return {}; }
+    /// Of a system without factors: banded matrices, one per axis, whose Kronecker product comes
+    /// near A^T D A, to precondition with; empty where none are known.
+    virtual std::vector<BandedMatrix> nearby_factors() const { return {}; }
 
     /// Adds lambda times the roughness to what is minimised, the mean of the weighted squares: for
     /// a sequence or cloud lambda times the integral of the squared derivatives of the given order

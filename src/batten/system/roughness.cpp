@@ -35,21 +35,15 @@ std::vector<std::pair<double, double>> gauss_rule(int count) {
 
 BandedMatrix roughness_matrix(const KnotVector& knots, int order) {
     const int p = knots.degree();
-    const Index n = knots.free_count();
-    BandedMatrix matrix(n, p, knots.closure());
+    BandedMatrix matrix(knots.free_count(), p, knots.closure());
     const auto rule = gauss_rule(p + 1);
     for (Index span = p; span < knots.control_count(); ++span) {
         const double half = (knots[span + 1] - knots[span]) / 2;
         if (!(half > 0)) continue;
         const double middle = (knots[span + 1] + knots[span]) / 2;
-        for (const auto& [x, weight] : rule) {
-            const BasisValues b = basis_derivatives(knots, span, middle + half * x, order);
-            for (int i = 0; i <= p; ++i)
-                for (int j = i; j <= p; ++j)
-                    matrix.at((span - p + i) % n, j - i) += weight * half *
-                                                            b[static_cast<std::size_t>(i)] *
-                                                            b[static_cast<std::size_t>(j)];
-        }
+        for (const auto& [x, weight] : rule)
+            matrix.add_outer(weight * half,
+                             active_functions(knots, middle + half * x, Numbering::free, order));
     }
     return matrix;
 }

@@ -49,21 +49,21 @@ DataSide::DataSide(std::vector<KnotVector> axes, const Samples& samples,
         collocations_.emplace_back(axes_[k], parameters_.axes[k]);
 }
 
+PointSet DataSide::values(const PointSet& control) const {
+    if (parameters_.is_scattered())
+        return evaluate(Spline::from_free(axes_, control), parameters_.scattered);
+    std::vector<double> grid = control.values();
+    Index inner = control.dim();
+    for (std::size_t k = collocations_.size(); k-- > 0;) {
+        grid = collocations_[k].apply_along(grid, inner);
+        inner *= collocations_[k].rows();
+    }
+    return {std::move(grid), control.dim()};
+}
+
 PointSet DataSide::residual(const PointSet& control) const {
     PointSet result(samples_.points);
-    PointSet values;
-    if (parameters_.is_scattered()) {
-        values = evaluate(Spline::from_free(axes_, control), parameters_.scattered);
-    } else {
-        std::vector<double> grid = control.values();
-        Index inner = control.dim();
-        for (std::size_t k = collocations_.size(); k-- > 0;) {
-            grid = collocations_[k].apply_along(grid, inner);
-            inner *= collocations_[k].rows();
-        }
-        values = PointSet(std::move(grid), control.dim());
-    }
-    add_scaled(result, -1.0, values);
+    add_scaled(result, -1.0, values(control));
     return result;
 }
 

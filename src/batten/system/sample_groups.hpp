@@ -47,11 +47,14 @@ class DataSide {
     DataSide(std::vector<KnotVector> axes, const Samples& samples, const Parameters& parameters,
              SampleGroups groups);
 
-    /// Q - A P for free control points P (N x dim): (m x dim).
+    /// A P for free control points P (N x dim) of any dim: (m x dim).
+    PointSet values(const PointSet& control) const;
+    /// Q - A P: (m x dim).
     PointSet residual(const PointSet& control) const;
     const SampleGroups& groups() const { return groups_; }
     const std::vector<KnotVector>& axes() const { return axes_; }
     Index dim() const { return samples_.dim(); }
+    Index sample_count() const { return samples_.size(); }
 
   private:
     std::vector<KnotVector> axes_;

@@ -23,7 +23,7 @@ struct StencilSystem::CellSums {
 
 namespace {
 
-constexpr Index sort_chunk = 1 << 15;
+constexpr Index sort_block = 1 << 15;
 
 /// Finds spans in O(1): a table over even steps of the domain gives the span at a step's start, a
 /// few comparisons the rest.
@@ -82,16 +82,14 @@ SortedSamples sort_by_cell(const std::vector<KnotVector>& axes, const SpanTable&
     const auto columns = static_cast<std::int32_t>(v.spans().size());
     const Index dim = points.dim();
     std::vector<std::int32_t> cell(static_cast<std::size_t>(m));
-    for_each_chunk((m + sort_chunk - 1) / sort_chunk, [&](Index chunk) {
-        for (Index i = chunk * sort_chunk; i < std::min(m, (chunk + 1) * sort_chunk); ++i) {
+    for_each_block(m, sort_block, [&](const Block& block) {
+        for (Index i = block.begin; i < block.end; ++i) {
             double t[2];
             for (Index k = 0; k < 2; ++k) {
                 const KnotVector& knots = axes[static_cast<std::size_t>(k)];
                 t[k] = knots.wrapped(parameters(i, k));
-                if (!(t[k] >= knots.begin() && t[k] <= knots.end()))
-                    throw InvalidInput(
-                        fmt::format("axis {}: parameter {} is outside the knots' domain [{}, {}]",
-                                    k, t[k], knots.begin(), knots.end()));
+                if (!knots.contains(t[k]))
+                    throw outside_domain(knots, fmt::format("axis {}: parameter {}", k, t[k]));
             }
             cell[static_cast<std::size_t>(i)] = u(t[0]) * columns + v(t[1]);
         }
@@ -138,13 +136,13 @@ void convert(const ChebyshevMaps& a, const ChebyshevMaps& b, int p, int q, Index
     for (int r = 0; r < rows; ++r)
         for (int k = 0; k <= q; ++k)
             for (int l = k; l <= q; ++l)
-                half[static_cast<std::size_t>(r * pairs_v + b.pair_row(k, l))] =
+                half[static_cast<std::size_t>(r * pairs_v + pair_row(k, l, q))] =
                     b.pair(k, l, moments.data() + r * columns);
     sums.grams.assign(static_cast<std::size_t>(pairs_u * pairs_v), 0.0);
     for (int i = 0; i <= p; ++i)
         for (int j = i; j <= p; ++j) {
             const double* coefficient = a.pair_coefficients(i, j);
-            double* out = sums.grams.data() + a.pair_row(i, j) * pairs_v;
+            double* out = sums.grams.data() + pair_row(i, j, p) * pairs_v;
             for (int r = 0; r < rows; ++r)
                 for (Index k = 0; k < pairs_v; ++k)
                     out[k] += coefficient[r] * half[static_cast<std::size_t>(r * pairs_v + k)];
@@ -219,20 +217,17 @@ void StencilSystem::merge(const CellSums& sums) {
     const int p = axes_[0].degree();
     const int q = axes_[1].degree();
     const Index pairs_v = (q + 1) * (q + 2) / 2;
-    const auto pair = [](Index i, Index j, int degree) {
-        return i * (degree + 1) - i * (i - 1) / 2 + (j - i);
-    };
     const auto row_of = [&](Index i, std::size_t axis) {
-        return (sums.span[axis] - axes_[axis].degree() + i) % shape_[axis];
+        return (sums.span[axis] - axes_[axis].degree() + i) % controls_.length(axis);
     };
     for (Index i = 0; i <= p; ++i)
         for (Index k = 0; k <= q; ++k) {
-            const Index control = row_of(i, 0) * shape_[1] + row_of(k, 1);
+            const Index control = controls_.at({row_of(i, 0), row_of(k, 1)});
             for (Index j = i; j <= p; ++j)
                 for (Index l = 0; l <= q; ++l) {
                     const Index place = (j - i) * (2 * q + 1) + l - k + q;
                     at(place, control) += sums.grams[static_cast<std::size_t>(
-                        pair(i, j, p) * pairs_v + pair(std::min(k, l), std::max(k, l), q))];
+                        pair_row(i, j, p) * pairs_v + pair_row(std::min(k, l), std::max(k, l), q))];
                 }
             for (Index d = 0; d < dim(); ++d)
                 rhs_(control, d) +=
@@ -241,11 +236,11 @@ void StencilSystem::merge(const CellSums& sums) {
     for (Index i = 0; i <= p; ++i)
         for (Index j = i; j <= p; ++j)
             axis_grams_[0].at(row_of(i, 0), static_cast<int>(j - i)) +=
-                sums.axis_0[static_cast<std::size_t>(pair(i, j, p))];
+                sums.axis_0[static_cast<std::size_t>(pair_row(i, j, p))];
     for (Index k = 0; k <= q; ++k)
         for (Index l = k; l <= q; ++l)
             axis_grams_[1].at(row_of(k, 1), static_cast<int>(l - k)) +=
-                sums.axis_1[static_cast<std::size_t>(pair(k, l, q))];
+                sums.axis_1[static_cast<std::size_t>(pair_row(k, l, q))];
     total_weight_ += sums.weight;
     data_energy_ += sums.energy;
 }

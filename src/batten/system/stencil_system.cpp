@@ -9,42 +9,48 @@
 
 namespace batten {
 
+namespace {
+
+/// Places of half a stencil: offsets of 0 to the degree along axis 0, of both signs along the
+/// others.
+GridIndex half_stencil(const std::vector<KnotVector>& axes) {
+    std::vector<Index> shape{axes[0].degree() + 1};
+    for (std::size_t k = 1; k < axes.size(); ++k) shape.push_back(2 * axes[k].degree() + 1);
+    return GridIndex(shape);
+}
+
+} // namespace
+
 StencilSystem::StencilSystem(std::vector<KnotVector> axes, std::vector<double> centre)
-    : NormalSystem(std::move(axes), std::move(centre)), shape_(free_shape(axes_)) {
-    std::array<Index, 3> reach{};
-    for (std::size_t k = 0; k < axes_.size(); ++k) {
-        reach[k] = axes_[k].degree();
-        width_ *= k == 0 ? reach[k] + 1 : 2 * reach[k] + 1;
-    }
-    same_slice_ = width_ / (reach[0] + 1);
-    for (Index a = 0; a <= reach[0]; ++a)
-        for (Index b = -reach[1]; b <= reach[1]; ++b)
-            for (Index c = -reach[2]; c <= reach[2]; ++c) offsets_.push_back({a, b, c});
-    for (const auto& [a, b, c] : offsets_) {
-        Index flat = a;
-        if (axes_.size() > 1) flat = flat * shape_[1] + b;
-        if (axes_.size() > 2) flat = flat * shape_[2] + c;
-        flat_offsets_.push_back(flat);
-    }
-    for (const KnotVector& axis : axes_) any_closed_ = any_closed_ || axis.closed();
-    stencil_.resize(static_cast<std::size_t>(size() * width_));
-    for (const KnotVector& axis : axes_)
+    : NormalSystem(std::move(axes), std::move(centre)),
+      controls_(free_shape(axes_)),
+      places_(half_stencil(axes_)),
+      same_slice_(places_.stride(0)) {
+    places_.for_each([&](GridIndex::Place offset, Index) {
+        for (std::size_t k = 1; k < axes_.size(); ++k) offset[k] -= axes_[k].degree();
+        offsets_.push_back(offset);
+        flat_offsets_.push_back(controls_.at(offset));
+    });
+    std::vector<Index> active;
+    for (const KnotVector& axis : axes_) {
+        any_closed_ = any_closed_ || axis.closed();
+        active.push_back(axis.degree() + 1);
         axis_grams_.emplace_back(axis.free_count(), axis.degree(), axis.closure());
+    }
+    GridIndex(active).for_each(
+        [&](const GridIndex::Place& place, Index) { active_places_.push_back(places_.at(place)); });
+    stencil_.resize(static_cast<std::size_t>(GridIndex{places_.size(), size()}.size()));
 }
 
 Index StencilSystem::neighbour(Index control, Index place) const {
-    Index result = 0;
-    Index stride = 1;
-    for (std::size_t k = shape_.size(); k-- > 0;) {
-        const Index n = shape_[k];
-        Index at = control % n + offsets_[static_cast<std::size_t>(place)][k];
-        if (at >= n) at -= n; // only on closed axes does an entry that is not zero go around
-        if (at < 0) at += n;
-        result += at * stride;
-        stride *= n;
-        control /= n;
+    GridIndex::Place at = controls_.place(control);
+    for (std::size_t k = 0; k < controls_.axis_count(); ++k) {
+        const Index n = controls_.length(k);
+        at[k] += offsets_[static_cast<std::size_t>(place)][k];
+        if (at[k] >= n) at[k] -= n; // only on closed axes does an entry that is not zero go around
+        if (at[k] < 0) at[k] += n;
     }
-    return result;
+    return controls_.at(at);
 }
 
 void StencilSystem::add(const Points& points, const Points& parameters,
@@ -56,75 +62,34 @@ void StencilSystem::add(const Points& points, const Points& parameters,
                    weights.empty() ? 1.0 : weights[static_cast<std::size_t>(i)]);
 }
 
-namespace {
-
-/// The tensor product B-splines that do not vanish at a sample: local places along the axes, row
-/// and value.
-struct Local {
-    std::array<Index, 3> place;
-    Index control;
-    double value;
-};
-
-void local_basis(const std::vector<KnotVector>& axes, const double* parameter,
-                 std::vector<Local>& out) {
-    out.assign(1, {{0, 0, 0}, 0, 1.0});
-    std::vector<Local> next;
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-        const KnotVector& knots = axes[k];
-        const double t = knots.wrapped(parameter[k]);
-        if (!(t >= knots.begin() && t <= knots.end()))
-            throw InvalidInput(
-                fmt::format("axis {}: parameter {} is outside the knots' domain [{}, {}]", k, t,
-                            knots.begin(), knots.end()));
-        const Index span = knots.span(t);
-        const BasisValues value = basis_values(knots, span, t);
-        next.clear();
-        for (const Local& local : out)
-            for (Index r = 0; r <= knots.degree(); ++r) {
-                const Index at = (span - knots.degree() + r) % knots.free_count();
-                Local grown = local;
-                grown.place[k] = r;
-                grown.control = local.control * knots.free_count() + at;
-                grown.value = local.value * value[static_cast<std::size_t>(r)];
-                next.push_back(grown);
-            }
-        out.swap(next);
-    }
-}
-
-} // namespace
-
 void StencilSystem::add_sample(std::span<const double> point, const double* parameter,
                                double weight) {
-    thread_local std::vector<Local> local;
-    local_basis(axes_, parameter, local);
-    const Index second = axes_.size() > 1 ? axes_[1].degree() : 0;
-    const Index third = axes_.size() > 2 ? axes_[2].degree() : 0;
-    for (const Local& a : local) {
-        for (const Local& b : local) {
-            const Index step = b.place[0] - a.place[0];
-            if (step < 0) continue;
-            const Index place =
-                (step * (2 * second + 1) + b.place[1] - a.place[1] + second) * (2 * third + 1) +
-                b.place[2] - a.place[2] + third;
-            at(place, a.control) += weight * a.value * b.value;
-        }
+    for (std::size_t k = 0; k < axes_.size(); ++k)
+        if (const double t = axes_[k].wrapped(parameter[k]); !axes_[k].contains(t))
+            throw outside_domain(axes_[k], fmt::format("axis {}: parameter {}", k, t));
+    const ActiveRow row(axes_, {parameter, axes_.size()}, Numbering::free);
+    struct Active {
+        Index control;
+        double value;
+    };
+    constexpr std::size_t most_active = (max_degree + 1) * (max_degree + 1) * (max_degree + 1);
+    std::array<Active, most_active> active; // set as far as `count`
+    std::size_t count = 0;
+    row.for_each_active([&](Index control, double value) { active[count++] = {control, value}; });
+    const std::size_t one_row = count / static_cast<std::size_t>(axes_[0].degree() + 1);
+    const Index middle = same_slice_ / 2; // the place of the offset zero
+    for (std::size_t a = 0; a < count; ++a) {
+        const auto [control, value] = active[a];
+        // the half of the stencil: functions before a's along axis 0 have no place
+        for (std::size_t b = a / one_row * one_row; b < count; ++b)
+            at(active_places_[b] - active_places_[a] + middle, control) +=
+                weight * value * active[b].value;
         for (Index d = 0; d < dim(); ++d)
-            rhs_(a.control, d) +=
-                weight * a.value *
+            rhs_(control, d) +=
+                weight * value *
                 (point[static_cast<std::size_t>(d)] - centre_[static_cast<std::size_t>(d)]);
     }
-    for (std::size_t k = 0; k < axes_.size(); ++k) {
-        const KnotVector& knots = axes_[k];
-        const double t = knots.wrapped(parameter[k]);
-        const Index span = knots.span(t);
-        const BasisValues b = basis_values(knots, span, t);
-        for (int i = 0; i <= knots.degree(); ++i)
-            for (int j = i; j <= knots.degree(); ++j)
-                axis_grams_[k].at((span - knots.degree() + i) % knots.free_count(), j - i) +=
-                    weight * b[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(j)];
-    }
+    for (std::size_t k = 0; k < axes_.size(); ++k) axis_grams_[k].add_outer(weight, row.axes()[k]);
     total_weight_ += weight;
     for (std::size_t d = 0; d < point.size(); ++d)
         data_energy_ += weight * (point[d] - centre_[d]) * (point[d] - centre_[d]);
@@ -144,7 +109,7 @@ void StencilSystem::apply_plane(const double* x, double* y) const {
     const Index n = size();
     std::fill(y, y + n, 0.0);
     for (Index begin = 0; begin < n; begin += block)
-        for (Index place = 0; place < width_; ++place) {
+        for (Index place = 0; place < places_.size(); ++place) {
             const Index offset = flat_offsets_[static_cast<std::size_t>(place)];
             const Index first =
                 std::max(begin, -offset); // entries that would leave the net are zero
@@ -159,7 +124,7 @@ void StencilSystem::apply_plane(const double* x, double* y) const {
 void StencilSystem::apply(const PointSet& x, PointSet& y) const {
     if (any_closed_) {
         y.fill(0);
-        for_each_entry([&](Index i, Index j, double value) {
+        visit_entries([&](Index i, Index j, double value) {
             for (Index d = 0; d < x.dim(); ++d) y(i, d) += value * x(j, d);
         });
         return;
@@ -178,9 +143,19 @@ void StencilSystem::apply(const PointSet& x, PointSet& y) const {
 
 std::vector<double> StencilSystem::diagonal() const {
     std::vector<double> result(static_cast<std::size_t>(size()));
-    for_each_entry([&](Index i, Index j, double value) {
+    visit_entries([&](Index i, Index j, double value) {
         if (i == j) result[static_cast<std::size_t>(i)] += value;
     });
+    return result;
+}
+
+void StencilSystem::for_each_entry(EntryVisitor visit) const {
+    visit_entries(visit);
+}
+
+std::vector<BandedMatrix> StencilSystem::nearby_factors() const {
+    std::vector<BandedMatrix> result = axis_grams_;
+    for (std::size_t k = 1; k < result.size(); ++k) result[k].divide(total_weight_);
     return result;
 }
 
@@ -196,14 +171,13 @@ void StencilSystem::add_roughness(double lambda, int order) {
 }
 
 void StencilSystem::add_product(double factor, const std::vector<BandedMatrix>& matrices) {
-    for (Index place = 0; place < width_; ++place)
+    for (Index place = 0; place < places_.size(); ++place)
         for (Index i = 0; i < size(); ++i) {
+            const GridIndex::Place at_control = controls_.place(i);
             double value = factor;
-            Index rest = i;
-            for (std::size_t k = shape_.size(); k-- > 0 && value != 0;) {
-                const Index n = shape_[k];
-                const Index row = rest % n;
-                rest /= n;
+            for (std::size_t k = axes_.size(); k-- > 0 && value != 0;) {
+                const Index n = controls_.length(k);
+                const Index row = at_control[k];
                 const Index step = offsets_[static_cast<std::size_t>(place)][k];
                 Index from = step >= 0 ? row : row + step;
                 if (axes_[k].closed()) from = (from + n) % n;

@@ -15,22 +15,22 @@ class StencilSystem : public NormalSystem {
     /// Throws InvalidInput when a parameter is outside the knots' domain.
     void add(const Points& points, const Points& parameters, std::span<const double> weights);
 
+    std::unique_ptr<NormalSystem> clone() const override {
+        return std::make_unique<StencilSystem>(*this);
+    }
     void apply(const PointSet& x, PointSet& y) const override;
     std::vector<double> diagonal() const override;
+    void for_each_entry(EntryVisitor visit) const override;
+    /// Per axis the matrix of the samples' B-splines on that axis alone, all but the first over the
+    /// total weight: their product comes near A^T D A when the samples are spread evenly.
+    std::vector<BandedMatrix> nearby_factors() const override;
     void add_roughness(double lambda, int order) override;
-
-    /// Per axis the matrix sum of w b b^T of the samples' B-splines on that axis alone: their
-    /// Kronecker product over total_weight() comes near A^T D A when the samples are spread evenly.
-    const std::vector<BandedMatrix>& axis_grams() const { return axis_grams_; }
-    double total_weight() const { return total_weight_; }
-
-    /// Calls `entry(row, column, value)` for the entries of the matrix; entries for one place add
-    /// up.
-    template <class Entry>
-    void for_each_entry(Entry entry) const;
 
   private:
     struct CellSums;
+    /// for_each_entry without a call per entry.
+    template <class Visit>
+    void visit_entries(Visit visit) const;
     /// Row of control point `control` moved by stencil place `place`.
     Index neighbour(Index control, Index place) const;
     double& at(Index place, Index control) {
@@ -42,27 +42,29 @@ class StencilSystem : public NormalSystem {
     void merge(const CellSums& sums);
     void apply_plane(const double* x, double* y) const;
 
-    std::vector<Index> shape_;
-    Index width_ = 1;      // places of the half stencil: (p_0 + 1) (2 p_1 + 1) (2 p_2 + 1)
-    Index same_slice_ = 1; // places whose offset along axis 0 is zero; they hold both directions
-    std::vector<double> stencil_; // (width x N)
-    std::vector<std::array<Index, 3>> offsets_;
+    GridIndex controls_;
+    GridIndex places_; // of the half stencil: (p_0 + 1) x (2 p_1 + 1) x (2 p_2 + 1)
+    Index same_slice_; // places whose offset along axis 0 is zero; they hold both directions
+    std::vector<double> stencil_; // (places x N)
+    std::vector<GridIndex::Place> offsets_;
     std::vector<Index> flat_offsets_; // of the neighbours when no axis is closed
+    std::vector<Index>
+        active_places_; // of a sample's active functions, the first of them at place 0
     bool any_closed_ = false;
     std::vector<BandedMatrix> axis_grams_;
     double total_weight_ = 0;
 };
 
-template <class Entry>
-void StencilSystem::for_each_entry(Entry entry) const {
-    for (Index place = 0; place < width_; ++place)
+template <class Visit>
+void StencilSystem::visit_entries(Visit visit) const {
+    for (Index place = 0; place < places_.size(); ++place)
         for (Index i = 0; i < size(); ++i) {
             const double value = stencil_[static_cast<std::size_t>(place * size() + i)];
             if (value == 0) continue;
             const Index j = any_closed_ ? neighbour(i, place)
                                         : i + flat_offsets_[static_cast<std::size_t>(place)];
-            entry(i, j, value);
-            if (place >= same_slice_) entry(j, i, value);
+            visit(i, j, value);
+            if (place >= same_slice_) visit(j, i, value);
         }
 }
 

@@ -164,7 +164,9 @@ class Counting : public NormalSystem {
         ++applied;
         inner_.apply(x, y);
     }
+    std::unique_ptr<NormalSystem> clone() const override { return inner_.clone(); }
     std::vector<double> diagonal() const override { return inner_.diagonal(); }
+    void for_each_entry(EntryVisitor visit) const override { inner_.for_each_entry(visit); }
     std::vector<const BandedMatrix*> factors() const override { return inner_.factors(); }
     void add_roughness(double, int) override { FAIL() << "not used here"; }
     mutable Index applied = 0;

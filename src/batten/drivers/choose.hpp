@@ -1,0 +1,18 @@
+#pragma once
+
+#include <batten/drivers/table.hpp>
+
+namespace batten {
+
+/// A driver for a problem that leaves the method open, or the one that it names.
+struct Choice {
+    const Driver* driver;
+    std::string reason; ///< empty when the caller named it
+};
+
+/// The first driver, fastest first, whose column has all that is asked and that can determine the
+/// control points. Throws InvalidInput when there is none, or the named one's column lacks
+/// something.
+Choice choose(const Problem& problem);
+
+} // namespace batten

@@ -1,0 +1,91 @@
+#include <batten/drivers/iteration.hpp>
+
+#include <batten/shape/limits.hpp>
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace batten {
+
+namespace {
+
+/// Keeps the polygon of every `stride`-th iteration; once there are twice too many, of every other
+/// of these.
+class FrameRecorder {
+  public:
+    explicit FrameRecorder(Index most) : most_(most) {}
+    void record(const Iteration& now, std::vector<Frame>& frames) {
+        if (most_ == 0 || now.number % stride_ != 0) return;
+        frames.push_back({now.number, now.control});
+        if (static_cast<Index>(frames.size()) < 2 * most_) return;
+        stride_ *= 2;
+        std::erase_if(frames, [&](const Frame& frame) { return frame.iteration % stride_ != 0; });
+    }
+
+  private:
+    Index most_;
+    Index stride_ = 1;
+};
+
+Observer recording(const FitOptions& options, const DeviationMeasure& deviation,
+                   FitReport& report) {
+    return [&, frames = FrameRecorder(options.most_frames)](const Iteration& now) mutable {
+        frames.record(now, report.frames);
+        if (options.keep_history)
+            report.history.push_back({now.number, now.gradient_norm, now.largest_move,
+                                      deviation(now.control), now.constraint_error});
+        if (options.cancelled && options.cancelled()) return Continue::no;
+        return options.observer ? options.observer(now) : Continue::yes;
+    };
+}
+
+bool convex(const PointSet& control, Closure closure) {
+    const std::vector<int> signs = turn_signs(control, closure);
+    const bool left = std::ranges::all_of(signs, [](int s) { return s >= 0; });
+    return left || std::ranges::all_of(signs, [](int s) { return s <= 0; });
+}
+
+} // namespace
+
+StepLimit shape_limit(Preserve preserve, const std::vector<KnotVector>& axes,
+                      const PointSet& control, std::string_view method) {
+    if (preserve == Preserve::nothing) return {};
+    if (axes.size() != 1 || control.dim() != 2)
+        throw InvalidInput(fmt::format(
+            "preserve: shape is kept for curves in the plane, not for {} in dimension {}",
+            axes.size() == 1 ? "a curve" : "a surface or volume", control.dim()));
+    const Closure closure = axes[0].closure();
+    if (preserve == Preserve::convexity && !convex(control, closure))
+        throw InvalidInput("preserve convexity: the initial control polygon is not convex");
+    if (method == "pia" && preserve == Preserve::convexity)
+        return [closure](const PointSet& polygon, PointSet& moves) {
+            keep_turns(polygon, moves, closure);
+        };
+    return [closure](const PointSet& polygon, PointSet& moves) {
+        keep_inflections(polygon, moves, closure);
+    };
+}
+
+Course iterated(Method& method, Departure start, const std::vector<KnotVector>& axes,
+                const FitOptions& options, const DeviationMeasure& deviation) {
+    Course course{std::move(start.control), {}};
+    FitReport& report = course.report;
+    const StepLimit limit = shape_limit(options.hold.preserve, axes, course.control, method.name());
+    if (limit) report.allowed_inflections = inflection_count(course.control, axes[0].closure());
+    const Summary summary =
+        iterate(method, course.control, options.stop,
+                {recording(options, deviation, report), limit, deviation, start.centre});
+    report.method = method.name();
+    report.termination = summary.termination;
+    report.iterations = summary.iterations;
+    report.gradient_norm = summary.gradient_norm;
+    report.first_gradient_norm = summary.first_gradient_norm;
+    report.observed_rate = summary.observed_rate;
+    report.predicted_rate = method.predicted_rate();
+    report.settings = method.settings();
+    if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
+    if (limit) report.inflections = inflection_count(course.control, axes[0].closure());
+    return course;
+}
+
+} // namespace batten

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <batten/problem/problem.hpp>
+#include <batten/problem/report.hpp>
+
+namespace batten {
+
+/// How a method went: the control points it came to, and its part of the account.
+struct Course {
+    PointSet control; ///< free control points, relative to what the start was relative to
+    FitReport report;
+};
+
+/// Where a method starts and what its control points are relative to.
+struct Departure {
+    PointSet control;             ///< free control points (N x dim)
+    std::vector<double> centre{}; ///< empty: nothing
+};
+
+/// Runs a method in the one loop under the options' stop rule, observer, history and shape limit.
+/// `deviation` measures the largest deviation of a sample from absolute control points. Throws
+/// InvalidInput as shape_limit does.
+Course iterated(Method& method, Departure start, const std::vector<KnotVector>& axes,
+                const FitOptions& options, const DeviationMeasure& deviation);
+
+/// The step limit that keeps what the options want kept, none for nothing.
+/// Throws InvalidInput unless the spline is a planar curve, or convexity is asked of a polygon that
+/// is not convex.
+StepLimit shape_limit(Preserve preserve, const std::vector<KnotVector>& axes,
+                      const PointSet& control, std::string_view method);
+
+} // namespace batten

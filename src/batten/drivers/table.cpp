@@ -1,0 +1,151 @@
+#include <batten/drivers/table.hpp>
+
+#include <batten/core/names.hpp>
+#include <batten/drivers/epia_driver.hpp>
+#include <batten/drivers/least_squares.hpp>
+#include <batten/drivers/pia_driver.hpp>
+#include <batten/search/search.hpp>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace batten {
+
+namespace {
+
+using enum Request;
+
+constexpr Requests space{size, knots, placement, parameters, closed}; ///< the spline space, stated
+constexpr Requests least_squares_terms{weights, smoothing, outliers};
+constexpr Requests course{start, history, stop}; ///< of an iteration
+constexpr Requests curves{seam, shape};          ///< what only a curve has
+constexpr Requests held{samples, tangents};
+constexpr Requests searched{tolerance, limit, parameters, weights, closed, outliers};
+
+/// The columns of the iterations on the normal equations.
+Driver iteration(std::string_view name) {
+    const MethodEntry& entry = method_entry(name);
+    const Requests all = space | least_squares_terms | course;
+    return {entry.name, entry.description, entry.source, entry.settings, all | curves, all,
+            all,        fit_least_squares};
+}
+
+Driver with(const MethodEntry& entry, std::optional<Requests> sequence,
+            std::optional<Requests> grid, std::optional<Requests> cloud,
+            Fitted (*fit)(const Problem&, std::string_view)) {
+    return {entry.name, entry.description, entry.source, entry.settings, sequence, grid, cloud,
+            fit};
+}
+
+std::vector<Driver> table() {
+    const Requests boundary{boundaries};
+    const Requests solved = space | least_squares_terms | held | Requests{stop};
+    const Requests constrained = solved | course;
+    const Requests interpolating = space | course | Requests{local};
+    const Requests grown{size, history, stop, outliers};
+    return {
+        with(method_entry("direct"), solved | curves, solved | boundary, solved, fit_least_squares),
+        iteration("lspia"),
+        iteration("mlspia"),
+        with(method_entry("clspia"), constrained | curves, constrained | boundary, constrained,
+             fit_least_squares),
+        with(method_entry("pia"), interpolating | Requests{shape}, interpolating, std::nullopt,
+             fit_pia),
+        with(method_entry("epia"), grown | Requests{samples, shape, parameters},
+             grown | Requests{parameters}, grown | Requests{knots, placement, start}, fit_epia),
+        iteration("cg"),
+        iteration("chebyshev"),
+        iteration("nesterov"),
+        iteration("barzilai-borwein"),
+        with(method_entry("search"), searched | held | curves | Requests{corners},
+             searched | held | boundary, searched | held, fit_by_search),
+    };
+}
+
+/// The first few of them.
+std::string some(const std::vector<std::string_view>& names) {
+    constexpr std::size_t few = 3;
+    const auto end = names.begin() + static_cast<Index>(std::min(few, names.size()));
+    return fmt::format("{}{}", fmt::join(names.begin(), end, ", "),
+                       names.size() > few ? ", ..." : "");
+}
+
+/// Names of the drivers that take all that is asked, or else of those that take one request of it.
+std::vector<std::string_view> able(SampleKind kind, Requests asked) {
+    std::vector<std::string_view> names;
+    for (const Driver& other : drivers())
+        if (other.takes(kind) && other.takes(kind)->covers(asked)) names.push_back(other.name);
+    return names;
+}
+
+std::string subject(const Driver& driver) {
+    return driver.name == "search" ? std::string("a fit to a tolerance")
+                                   : fmt::format("method {}", driver.name);
+}
+
+} // namespace
+
+std::span<const Driver> drivers() {
+    static const std::vector<Driver> all = table();
+    return all;
+}
+
+const Driver& driver(std::string_view name) {
+    std::vector<std::string_view> names{"auto"};
+    for (const Driver& entry : drivers()) {
+        if (entry.name == name) return entry;
+        names.push_back(entry.name);
+    }
+    throw InvalidInput(unknown_name("method", name, names));
+}
+
+void check_column(const Driver& driver, SampleKind kind, Requests asked) {
+    const auto& column = driver.takes(kind);
+    if (!column) {
+        const std::vector<std::string_view> names = able(kind, asked);
+        throw InvalidInput(fmt::format("{} cannot fit a {}; {} can", subject(driver),
+                                       to_string(kind), names.empty() ? "auto" : some(names)));
+    }
+    const Requests lacking = asked - *column;
+    if (lacking.empty()) return;
+    const Request first = lacking.list().front();
+    std::vector<std::string_view> names = able(kind, asked);
+    const bool together = !names.empty();
+    if (!together) names = able(kind, Requests{first});
+    throw InvalidInput(
+        fmt::format("{} cannot {}{}; {}", subject(driver), to_string(first),
+                    kind == SampleKind::sequence ? "" : fmt::format(" of a {}", to_string(kind)),
+                    names.empty() ? "nothing can"
+                                  : fmt::format("{} can{}", some(names),
+                                                together ? "" : ", without what else is asked")));
+}
+
+std::string driver_table() {
+    constexpr std::array kinds{SampleKind::sequence, SampleKind::grid, SampleKind::cloud};
+    std::string text = fmt::format("| {:<50} |", "");
+    std::string rule = fmt::format("|{:-<52}|", "");
+    for (const Driver& driver : drivers()) {
+        text += fmt::format(" {} |", driver.name);
+        rule += fmt::format("{:-<{}}|", "", driver.name.size() + 2);
+    }
+    text += "\n" + rule + "\n";
+    const auto row = [&](std::string_view words, auto letter) {
+        text += fmt::format("| {:<50} |", words);
+        for (const Driver& driver : drivers()) {
+            std::string letters;
+            for (SampleKind kind : kinds)
+                if (driver.takes(kind) && letter(*driver.takes(kind)))
+                    letters += to_string(kind)[0];
+            text += fmt::format(" {:<{}} |", letters.empty() ? "-" : letters, driver.name.size());
+        }
+        text += "\n";
+    };
+    row("fit", [](Requests) { return true; });
+    for (std::size_t k = 0; k < request_count; ++k)
+        row(to_string(static_cast<Request>(k)),
+            [&](Requests column) { return column.has(static_cast<Request>(k)); });
+    return text;
+}
+
+} // namespace batten

@@ -1,0 +1,126 @@
+#include <batten/fit/account.hpp>
+
+#include <batten/measure/deviation.hpp>
+#include <batten/problem/held.hpp>
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace batten {
+
+namespace {
+
+void note_duplicates(const Parameters& parameters, std::vector<std::string>& notes) {
+    for (std::size_t axis = 0; axis < parameters.axes.size(); ++axis) {
+        const auto& t = parameters.axes[axis];
+        Index equal = 0;
+        for (std::size_t i = 1; i < t.size(); ++i) equal += t[i] == t[i - 1] ? 1 : 0;
+        if (equal > 0)
+            notes.push_back(fmt::format(
+                "axis {}: {} identical consecutive samples share a parameter and count each", axis,
+                equal));
+    }
+}
+
+/// Largest part of its tolerance that a sample is away; the first within is 1 or less, but for
+/// rounding.
+double part_of_tolerance(const std::vector<double>& deviations,
+                         const std::vector<double>& tolerance) {
+    double worst = 0;
+    for (std::size_t i = 0; i < deviations.size(); ++i)
+        worst = std::max(worst, deviations[i] / tolerance[i]);
+    return worst;
+}
+
+/// What was stated, and what the spline and the driver's course came to.
+std::vector<Goal> judged(const FitReport& report, const Problem& problem,
+                         const std::vector<double>& deviations) {
+    constexpr double rounding = 1 + 1e-9;
+    std::vector<Goal> goals;
+    const auto state = [&](const char* name, double stated, double reached) {
+        goals.push_back({name, stated, reached, reached <= stated * rounding});
+    };
+    const StopRule& stop = problem.options.stop;
+    if (!problem.tolerance.empty()) {
+        const double part = part_of_tolerance(deviations, problem.tolerance);
+        const bool within =
+            part <= rounding && report.termination != Termination::tolerance_not_met;
+        goals.push_back({"tolerance", report.tolerance, part * report.tolerance, within});
+    } else if (stop.deviation > 0) {
+        state("deviation", stop.deviation, report.deviation.maximum);
+    }
+    if (stop.gradient > 0 && report.iterated())
+        state("gradient", stop.gradient, report.gradient_norm);
+    const double least = exactness * problem.size;
+    if (report.interpolated > 0) state("exact samples", least, report.constraint_error);
+    if (report.tangents > 0) state("tangents", exactness, report.tangent_error);
+    if (report.boundaries > 0) state("boundaries", least, report.boundary_error);
+    if (report.allowed_inflections >= 0)
+        state("inflections", static_cast<double>(report.allowed_inflections),
+              static_cast<double>(report.inflections));
+    return goals;
+}
+
+/// The ending that the goals allow: nothing is met or converged while a stated goal is not.
+Termination ending(const FitReport& report) {
+    const auto missed = [&](std::string_view name) {
+        return std::ranges::any_of(
+            report.goals, [&](const Goal& goal) { return goal.name == name && !goal.met; });
+    };
+    const bool over = report.termination == Termination::converged ||
+                      report.termination == Termination::tolerance_met;
+    if (!over) return report.termination;
+    if (missed("tolerance") || missed("deviation")) return Termination::tolerance_not_met;
+    if (!report.goals_met()) return Termination::stalled;
+    const bool distance_stated = std::ranges::any_of(report.goals, [](const Goal& goal) {
+        return goal.name == "tolerance" || goal.name == "deviation";
+    });
+    return distance_stated ? Termination::tolerance_met : Termination::converged;
+}
+
+/// A search that is within tolerance relative to the first sample may not be so in the coordinates.
+std::string verdict_of(const FitReport& report, Termination before) {
+    if (before != Termination::tolerance_met || report.termination == before) return report.verdict;
+    return "not met: it is below what the coordinates, as large as they are, can tell apart; shift "
+           "them towards zero";
+}
+
+} // namespace
+
+FitResult accounted(Fitted fitted, const Problem& problem) {
+    const Samples& samples = problem.samples;
+    const HoldOptions& hold = problem.options.hold;
+    const Spline& spline = fitted.spline;
+    FitReport report = std::move(fitted.report);
+    constexpr const char* kinds[] = {"curve", "surface", "volume"};
+    report.kind = kinds[spline.axis_count() - 1];
+    report.samples = samples.size();
+    report.dim = samples.dim();
+    report.control_shape = spline.control_shape();
+    for (const KnotVector& axis : spline.axes()) {
+        report.degree.push_back(axis.degree());
+        report.closures.push_back(axis.closure());
+    }
+    report.data_size = problem.size;
+    std::vector<std::string> notes = samples.notes;
+    if (problem.tolerance.empty()) note_duplicates(fitted.parameters, notes);
+    report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
+    const std::vector<double> deviations =
+        parametric_deviations(spline, samples, fitted.parameters);
+    report.deviation = summarise(deviations, fitted.judged_by);
+    report.interpolated = static_cast<Index>(hold.interpolate.size());
+    for (Index i : hold.interpolate)
+        report.constraint_error =
+            std::max(report.constraint_error, deviations[static_cast<std::size_t>(i)]);
+    report.tangents = static_cast<Index>(hold.tangents.size());
+    report.tangent_error = tangent_error(spline, samples, fitted.parameters, hold.tangents);
+    report.boundaries = static_cast<Index>(hold.boundaries.size());
+    report.boundary_error = boundary_error(spline, hold.boundaries);
+    report.goals = judged(report, problem, deviations);
+    const Termination before = report.termination;
+    report.termination = ending(report);
+    report.verdict = verdict_of(report, before);
+    return {std::move(fitted.spline), std::move(report), std::move(fitted.parameters)};
+}
+
+} // namespace batten

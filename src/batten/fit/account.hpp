@@ -1,0 +1,13 @@
+#pragma once
+
+#include <batten/problem/problem.hpp>
+#include <batten/problem/result.hpp>
+
+namespace batten {
+
+/// The whole account of a fit: what the driver said of how it went, and what every fit's account
+/// says of the samples, the spline, the deviations and the stated goals, measured here on the
+/// spline itself.
+FitResult accounted(Fitted fitted, const Problem& problem);
+
+} // namespace batten

@@ -1,0 +1,94 @@
+#include <batten/fit/rescale.hpp>
+
+#include <cmath>
+
+namespace batten {
+
+namespace {
+
+void scale(std::vector<double>& values, double factor) {
+    for (double& x : values) x *= factor;
+}
+
+PointSet scaled(PointSet points, double factor) {
+    scale(points.values(), factor);
+    return points;
+}
+
+Spline scaled(const Spline& spline, double factor) {
+    return {spline.axes(), scaled(spline.control_points(), factor)};
+}
+
+/// Settings that are lengths.
+void scale(Settings& settings, double factor) {
+    for (const char* name : {"t_c", "inner_tolerance"})
+        if (const auto found = settings.find(name); found != settings.end())
+            found->second *= factor;
+}
+
+Observer unscaled(const Observer& observer, double factor) {
+    if (!observer) return {};
+    return [observer, factor](const Iteration& now) {
+        const PointSet control = scaled(now.control, 1 / factor);
+        return observer({now.number, control, now.gradient_norm / factor, now.largest_move / factor,
+                         now.constraint_error / factor / factor});
+    };
+}
+
+} // namespace
+
+double usual_unit(const Points& points) {
+    constexpr int far = 200;
+    double largest = 0;
+    for (Index i = 0; i < points.size() * points.dim(); ++i)
+        largest = std::max(largest, std::abs(points.data()[i]));
+    if (!(largest > 0) || !std::isfinite(largest)) return 1;
+    const int exponent = std::ilogb(largest);
+    return std::abs(exponent) <= far ? 1 : std::ldexp(1.0, -exponent);
+}
+
+Samples rescaled(Samples samples, double factor) {
+    samples.points = Points(scaled(PointSet(samples.points), factor));
+    return samples;
+}
+
+FitOptions rescaled(FitOptions options, double factor) {
+    options.tolerance.value *= factor;
+    scale(options.tolerance.per_sample, factor);
+    for (HeldTangent& tangent : options.hold.tangents) scale(tangent.value, factor);
+    for (HeldBoundary& boundary : options.hold.boundaries)
+        boundary.spline = scaled(boundary.spline, factor);
+    options.method.control = scaled(std::move(options.method.control), factor);
+    scale(options.method.settings, factor);
+    options.stop.gradient *= factor;
+    options.stop.deviation *= factor;
+    options.observer = unscaled(options.observer, factor);
+    options.unit *= factor;
+    return options;
+}
+
+FitResult rescaled(FitResult result, double factor) {
+    result.spline = scaled(result.spline, factor);
+    FitReport& report = result.report;
+    for (double* length :
+         {&report.deviation.maximum, &report.deviation.rms, &report.gradient_norm,
+          &report.first_gradient_norm, &report.constraint_error, &report.boundary_error,
+          &report.tolerance, &report.noise_level, &report.data_size})
+        *length *= factor;
+    scale(report.settings, factor);
+    for (Goal& goal : report.goals)
+        if (goal.name != "inflections" && goal.name != "tangents") {
+            goal.stated *= factor;
+            goal.reached *= factor;
+        }
+    for (HistoryEntry& entry : report.history) {
+        entry.gradient_norm *= factor;
+        entry.largest_move *= factor;
+        entry.max_deviation *= factor;
+        entry.constraint_error *= factor * factor;
+    }
+    for (Frame& frame : report.frames) frame.control = scaled(std::move(frame.control), factor);
+    return result;
+}
+
+} // namespace batten

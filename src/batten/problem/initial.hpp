@@ -1,0 +1,16 @@
+#pragma once
+
+#include <batten/problem/options.hpp>
+#include <batten/system/sample_groups.hpp>
+
+namespace batten {
+
+/// Groups of a cloud's samples: each belongs to the control point whose Greville abscissae are
+/// nearest.
+SampleGroups nearest_groups(const Parameters& parameters, const std::vector<KnotVector>& axes);
+
+/// Free control points (N x dim) to start from.
+PointSet initial_control(const Samples& samples, const Parameters& parameters,
+                         const std::vector<KnotVector>& axes, const MethodOptions& options);
+
+} // namespace batten

@@ -1,0 +1,171 @@
+#include <batten/problem/problem.hpp>
+
+#include <batten/parametrize/noise_aware.hpp>
+#include <batten/problem/held.hpp>
+#include <batten/problem/plan.hpp>
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace batten {
+
+namespace {
+
+void check_numbers(const FitOptions& options) {
+    if (options.threads < 0)
+        throw InvalidInput(fmt::format("threads: {} is negative", options.threads));
+    const double tolerance = options.tolerance.value;
+    if (tolerance != 0 && (!(tolerance > 0) || !std::isfinite(tolerance)))
+        throw InvalidInput(fmt::format("tolerance {} must be positive and finite", tolerance));
+    if (options.tolerance.max_control_points < 0)
+        throw InvalidInput(fmt::format("at most {} control points: a positive number is needed",
+                                       options.tolerance.max_control_points));
+    check(options.stop);
+    if (options.most_frames < 0)
+        throw InvalidInput(fmt::format("frames: {} is negative", options.most_frames));
+}
+
+/// Along an axis of a sequence or grid there are no more control points than samples.
+void check_counts(const Problem& problem) {
+    if (problem.kind == SampleKind::cloud) return;
+    const std::vector<Index> shape = problem.samples.shape();
+    const std::vector<Index>& n = problem.axes.control_points;
+    for (std::size_t k = 0; k < n.size(); ++k)
+        if (n[k] > shape[k])
+            throw InvalidInput(
+                fmt::format("axis {}: {} control points need at least as many samples, got {}", k,
+                            n[k], shape[k]));
+}
+
+void check_smoothing(const SmoothOptions& smooth, const AxisPlan& axes) {
+    if (!smooth.wanted) return;
+    if (smooth.order < 2 || smooth.order > 3)
+        throw InvalidInput(
+            fmt::format("smoothing: the derivative's order {} is not 2 or 3", smooth.order));
+    if (!(smooth.lambda >= 0) || !std::isfinite(smooth.lambda))
+        throw InvalidInput(
+            fmt::format("smoothing: the factor {} must be positive and finite", smooth.lambda));
+    for (int degree : axes.degree)
+        if (degree < smooth.order)
+            throw InvalidInput(fmt::format("smoothing: the derivative of order {} vanishes for "
+                                           "degree {}",
+                                           smooth.order, degree));
+}
+
+void check_seam(const FitOptions& options, const AxisPlan& axes) {
+    const int order = options.shape.seam_continuity;
+    if (order < 0) return;
+    if (axes.count() != 1)
+        throw InvalidInput("closed: the continuity at a seam is for curves, not for axes of a "
+                           "surface or volume");
+    if (axes.closures[0] == Closure::open)
+        throw InvalidInput(fmt::format("continuity C{} at the seam: the curve is open", order));
+    if (order > axes.degree[0] - 1)
+        throw InvalidInput(fmt::format("closed: continuity C{} at the seam is more than degree {} "
+                                       "has anywhere, C{}",
+                                       order, axes.degree[0], axes.degree[0] - 1));
+}
+
+/// A cloud's parameters that nobody gave: its points seen in a plane.
+Parameters seen(const Samples& samples, const ShapeOptions& shape) {
+    if (shape.parametrization)
+        throw InvalidInput("parametrize: a cloud's parameters are its points' coordinates in a "
+                           "plane, not lengths along it");
+    return projected(samples, shape.projection                 ? *shape.projection
+                              : samples.order == Order::ground ? Projection::xy
+                                                               : Projection::plane);
+}
+
+/// What the samples are, once the options have had their say.
+SampleKind kind_of(const Samples& samples, const ShapeOptions& shape) {
+    if (shape.projection && (shape.parameters || !samples.grid.empty()))
+        throw InvalidInput("project: the parameters are given already, by a file or the grid");
+    if (shape.parameters && shape.parametrization)
+        throw InvalidInput("parametrize: the parameters are given already");
+    const bool scattered = shape.parameters && shape.parameters->is_scattered();
+    if (scattered || shape.projection) return SampleKind::cloud;
+    if (samples.kind() == SampleKind::cloud && shape.parameters) return SampleKind::sequence;
+    return samples.kind();
+}
+
+Parameters chosen_parameters(const Problem& problem) {
+    const Samples& samples = problem.samples;
+    const ShapeOptions& shape = problem.options.shape;
+    if (shape.parameters) {
+        check(*shape.parameters, samples);
+        return *shape.parameters;
+    }
+    const bool noisy = problem.options.smooth.wanted && !shape.parametrization &&
+                       problem.kind == SampleKind::sequence && samples.size() > 20;
+    if (noisy) return {{noise_aware_parameters(samples.points, problem.axes.closures[0])}, {}};
+    const Parametrization rule = shape.parametrization              ? *shape.parametrization
+                                 : samples.spacing == Spacing::even ? Parametrization::uniform
+                                                                    : Parametrization::chord;
+    return parameters_for_boundaries(samples, parametrize(samples, rule, problem.axes.closures),
+                                     problem.options.hold.boundaries);
+}
+
+/// Without a size and a tolerance: with smoothing enough control points, else within a thousandth
+/// of the data's size, where the method is left open.
+void complete_size(Problem& problem) {
+    FitOptions& options = problem.options;
+    const std::string& method = options.method.name;
+    const bool open = (method == "auto" || method == "search") && options.method.moving.empty();
+    if (problem.sized() || options.tolerance.stated()) return;
+    if (options.smooth.wanted) {
+        problem.axes.control_points = smoothing_size(problem.samples, problem.axes);
+    } else if (open && options.stop.deviation > 0) {
+        options.tolerance.value = options.stop.deviation;
+    } else if (open) {
+        options.tolerance.value = problem.size > 0 ? problem.size / 1000 : 1e-3;
+        problem.samples.notes.emplace_back(
+            "no size and no tolerance were stated: a thousandth of the data's diagonal was taken");
+    }
+}
+
+} // namespace
+
+void Problem::stop_if_cancelled() const {
+    if (options.cancelled && options.cancelled()) throw Cancelled("the fit was cancelled");
+}
+
+Problem problem_of(const Samples& samples, const FitOptions& options) {
+    check(samples);
+    check_numbers(options);
+    Problem problem{.samples = samples,
+                    .kind = kind_of(samples, options.shape),
+                    .options = options,
+                    .size = diagonal(samples.points)};
+    problem.stop_if_cancelled();
+    ShapeOptions& shape = problem.options.shape;
+    if (problem.kind == SampleKind::cloud && !shape.parameters)
+        shape.parameters = seen(samples, shape);
+    const Index axes =
+        problem.kind == SampleKind::cloud ? shape.parameters->axis_count() : samples.axis_count();
+    problem.axes = plan_axes(shape, axes);
+    check_counts(problem);
+    check_seam(options, problem.axes);
+    check_smoothing(options.smooth, problem.axes);
+    check_held(options.hold, problem.samples, problem.kind, problem.axes);
+    complete_size(problem);
+    problem.parameters = chosen_parameters(problem);
+    if (problem.options.tolerance.stated())
+        problem.tolerance = sample_tolerances(samples, problem.options.tolerance);
+    return problem;
+}
+
+std::vector<double> sample_tolerances(const Samples& samples, const ToleranceOptions& options) {
+    std::vector<double> t = options.per_sample;
+    if (t.empty()) t.assign(static_cast<std::size_t>(samples.size()), options.value);
+    if (static_cast<Index>(t.size()) != samples.size())
+        throw InvalidInput(
+            fmt::format("tolerances: {} given for {} samples; one per sample is needed", t.size(),
+                        samples.size()));
+    for (std::size_t i = 0; i < t.size(); ++i)
+        if (!(t[i] > 0) || !std::isfinite(t[i]))
+            throw InvalidInput(
+                fmt::format("tolerance {}: {} must be positive and finite", i, t[i]));
+    return t;
+}
+
+} // namespace batten

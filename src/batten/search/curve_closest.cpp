@@ -1,0 +1,39 @@
+#include <batten/search/curve_closest.hpp>
+
+#include <batten/search/search.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace batten {
+
+BetweenSamples check_reached(const CurveTask& task, const CurveTrial& trial) {
+    std::vector<double> reached = task.tolerance;
+    for (double& t : reached) t *= std::max(1.0, trial.worst);
+    return check_between(spline_of(trial), task.samples.points, trial.parameters, reached);
+}
+
+bool acceptable(const CurveTask& task, const CurveTrial& trial) {
+    if (trial.control.empty() || !std::isfinite(trial.worst) || !shape_kept(task, trial))
+        return false;
+    return check_reached(task, trial).excess <= wild_part;
+}
+
+void ClosestSeen::see(const CurveTask& task, const CurveTrial& trial) {
+    if (trial.worst < worst() && acceptable(task, trial)) trial_ = trial;
+}
+
+void ClosestSeen::see(const CurveTask& task, const ClosestSeen& other, double looser) {
+    if (!(other.worst() * looser < worst())) return;
+    CurveTrial trial = *other.trial_;
+    trial.worst *= looser;
+    for (double& r : trial.ratio) r *= looser;
+    see(task, trial); // it may have been acceptable for looser tolerances alone
+}
+
+double ClosestSeen::worst() const {
+    return trial_ ? trial_->worst : std::numeric_limits<double>::infinity();
+}
+
+} // namespace batten

@@ -1,0 +1,186 @@
+#include <batten/search/curve_fewest.hpp>
+
+#include <batten/samples/corners.hpp>
+#include <batten/samples/noise.hpp>
+#include <batten/samples/samples.hpp>
+#include <batten/search/curve_corners.hpp>
+#include <batten/search/curve_knots.hpp>
+#include <batten/search/curve_verdict.hpp>
+#include <batten/search/search.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace batten {
+
+namespace {
+
+constexpr Index few_samples = 5000; // for which searching once more takes little time
+
+/// Refines without corners and with them, and thins out what took fewer control points.
+CurveWithin refined_and_thinned(CurveTask& task, const ToleranceOptions& options, Index most) {
+    if (options.corners == Corners::given)
+        task.corners = checked_corners(options.corner_samples, task);
+    task.fixed = fixed_samples(task);
+    CurveWithin best = refined(task, most);
+    if (options.corners == Corners::automatic) {
+        CurveTask cornered = task;
+        cornered.corners = spaced_corners(find_corners(task.samples.points, task.closure), task);
+        if (!cornered.corners.empty()) {
+            cornered.fixed = fixed_samples(cornered);
+            CurveWithin other = refined(cornered, most);
+            ClosestSeen closest = best.closest;
+            closest.see(cornered, other.closest);
+            const auto count = [](const CurveWithin& fit) { return fit.trial.knots.free_count(); };
+            const bool better = other.met != best.met ? other.met
+                                : other.met           ? count(other) < count(best)
+                                                      : other.trial.worst < best.trial.worst;
+            if (better) {
+                best = std::move(other);
+                task.corners = std::move(cornered.corners);
+                task.fixed = std::move(cornered.fixed);
+            }
+            best.closest = std::move(closest);
+        }
+    }
+    // what is wild is searched again before anything is taken out
+    if (!best.met) return best;
+    const bool wild = task.roughness == 0 && between(task, best.trial) > wild_part;
+    if (!wild) thin_out(task, best);
+    return best;
+}
+
+/// The integral of the squared second derivative that the samples show where they bend by more
+/// than twice the tolerance, for parameters over [0, 1].
+double shown_roughness(const CurveTask& task) {
+    const Points& q = task.samples.points;
+    const std::vector<double>& t = task.parameters;
+    double sum = 0;
+    for (Index i = 1; i + 1 < q.size(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double before = t[k] - t[k - 1];
+        const double after = t[k + 1] - t[k];
+        if (!(before > 0) || !(after > 0)) continue;
+        double square = 0;
+        for (Index d = 0; d < q.dim(); ++d) {
+            const double chord = (after * q(i - 1, d) + before * q(i + 1, d)) / (before + after);
+            square += (q(i, d) - chord) * (q(i, d) - chord);
+        }
+        const double bend = std::max(0.0, std::sqrt(square) - 2 * task.tolerance[k]);
+        const double second = 2 * bend / (before * after);
+        sum += second * second * (before + after) / 2;
+    }
+    return sum;
+}
+
+/// Where knots stand nearly as close as samples, a curve may be within the tolerance and wild
+/// between them: the search is done again with a little roughness counted, such that what the
+/// samples show of it costs a small part of the tolerance.
+void calm_down(CurveTask& task, const ToleranceOptions& options, Index most, CurveWithin& found) {
+    if (!found.trial.control.empty() && found.met && between(task, found.trial) <= 1) return;
+    const bool unthinned = found.met && between(task, found.trial) > wild_part;
+    const double tolerance = tightest(task);
+    const double shown = std::max(shown_roughness(task), tolerance * tolerance);
+    const bool noisy =
+        noise_bound(task.samples.points) >= 0.3 * tolerance && task.samples.size() <= few_samples;
+    bool calmed = false;
+    for (double part : {0.1, 1.0}) {
+        if (!noisy || (calmed && between(task, found.trial) <= wild_part)) break;
+        CurveTask calmer = task;
+        calmer.roughness = part * tolerance * tolerance / shown;
+        CurveWithin again = refined_and_thinned(calmer, options, most);
+        found.closest.see(task, again.closest);
+        const bool better =
+            again.met && (!found.met || between(task, again.trial) < between(task, found.trial));
+        if (!better) continue;
+        again.closest = found.closest;
+        found = std::move(again);
+        task.roughness = calmer.roughness;
+        calmed = true;
+    }
+    if (!unthinned || calmed) return;
+    thin_out(task, found); // it may be tamer with fewer knots
+    found.closest.see(task, found.trial);
+}
+
+constexpr Index few_enough = 40; // control points for which a second search takes little time
+
+/// A curve that bends more often than the samples show is searched again, without these bends.
+void take_out_inflections(const CurveTask& task, const ToleranceOptions& options, Index most,
+                          CurveWithin& found) {
+    if (!found.met || task.most_inflections >= 0 || !can_show_inflections(task)) return;
+    const double height = visible_height(task, tightest(task));
+    const Index shown = shown_inflections(task, height);
+    if (curve_inflections(found.trial, height) <= shown) return;
+    if (near_interpolation(found.trial.knots.free_count(), task.samples.size()))
+        return; // it bends with the samples' noise
+    CurveTask shaped = task;
+    shaped.most_inflections = shown;
+    const auto accepted = [&](CurveWithin again) {
+        const double strays = std::max(1.0, between(task, found.trial));
+        if (!again.met || between(task, again.trial) > strays) return false;
+        found = std::move(again);
+        return true;
+    };
+    CurveWithin again = refined_further(shaped, found, most);
+    if (again.met) thin_out(shaped, again);
+    if (accepted(std::move(again)) || found.trial.knots.free_count() > few_enough) return;
+    accepted(refined_and_thinned(shaped, options, most)); // from nothing: other knots may do
+}
+
+} // namespace
+
+CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index most) {
+    CurveWithin found = refined_and_thinned(task, options, most);
+    calm_down(task, options, most, found);
+    const ClosestSeen closest = found.closest;
+    take_out_inflections(task, options, most, found);
+    found.closest = closest;
+    found.closest.see(task, found.trial);
+    found.met = found.met && between(task, found.trial) <= wild_part;
+    return found;
+}
+
+CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options, Index most,
+                          const CurveWithin& found) {
+    CurveWithin result = found;
+    ClosestSeen& closest = result.closest;
+    int missed = 0; // powers of two by which the tolerance is looser
+    int met = 0;
+    if (task.samples.size() <= few_samples)
+        std::frexp(std::min(closest.worst(), diagonal(task.samples.points) / tightest(task)), &met);
+    while (met > missed + 1) {
+        const int power = (met + missed) / 2;
+        const double factor = std::ldexp(1, power);
+        CurveTask looser = task;
+        for (double& t : looser.tolerance) t *= factor;
+        const CurveWithin again = fewest_knots(looser, options, most);
+        closest.see(task, again.closest, factor);
+        (again.met ? met : missed) = power;
+    }
+    result.trial = closest.trial().value_or(CurveTrial{});
+    result.met = closest.worst() <= 1;
+    result.stages.emplace_back("closest", result.trial.knots.free_count());
+    if (result.met) thin_out(task, result);
+    return result;
+}
+
+CurveWithin smooth_curve(const CurveTask& task, double noise, Index most) {
+    CurveTask looser = task;
+    looser.fixed = fixed_samples(task);
+    const double extreme = noise * (1 + std::sqrt(2 * std::log(task.samples.size())));
+    for (double& t : looser.tolerance) t = std::max(t, extreme);
+    CurveWithin smooth = refined(looser, most);
+    if (smooth.met && task.samples.size() <= few_samples)
+        thin_out(looser, smooth); // a thousand more samples per knot: nothing to gain
+    CurveTrial& trial = smooth.trial;
+    trial.worst = 0;
+    for (std::size_t i = 0; i < trial.ratio.size(); ++i) {
+        trial.ratio[i] *= looser.tolerance[i] / task.tolerance[i];
+        trial.worst = std::max(trial.worst, trial.ratio[i]);
+    }
+    return smooth;
+}
+
+} // namespace batten

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <batten/search/curve_refining.hpp>
+
+namespace batten {
+
+/// The whole search for a curve with few control points, at most `most`: refined, with corners or
+/// without, thinned out, searched again where it is wild or bends more often than its samples.
+/// `met` says that it is acceptable, too. The corners found are entered in the task.
+CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index most);
+
+/// The closest acceptable curve that the search above, which has missed the task's tolerances, or
+/// one at looser ones has seen; the trial has no control points when there is none.
+CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options, Index most,
+                          const CurveWithin& found);
+
+/// The best smooth curve for samples with a known level of noise: within what the noise's extremes
+/// ask for, where `met`.
+CurveWithin smooth_curve(const CurveTask& task, double noise, Index most);
+
+} // namespace batten

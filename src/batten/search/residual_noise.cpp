@@ -1,0 +1,64 @@
+#include <batten/search/residual_noise.hpp>
+
+#include <batten/basis/place_knots.hpp>
+#include <batten/parametrize/noise_aware.hpp>
+#include <batten/samples/samples.hpp>
+#include <batten/solve/direct.hpp>
+#include <batten/system/factored_system.hpp>
+
+#include <cmath>
+
+namespace batten {
+
+namespace {
+
+constexpr int degree = 3;
+/// A curve with too little freedom crosses its samples at most degree + 1 times per span: with this
+/// many samples to a span that is told from the crossings of chance, every second sample.
+constexpr Index samples_per_span = 16;
+
+/// What the least-squares curve with so many spans leaves of each sample (m x dim).
+PointSet residuals(const Points& q, const std::vector<double>& t, Index spans) {
+    const KnotVector knots = knots_from_parameters(t, degree, spans + degree);
+    BandedSystem system(knots, {q[0].begin(), q[0].end()});
+    system.add(t, q, {});
+    const Spline curve =
+        Spline::from_free({knots}, uncentred(solve_direct(system), system.centre()));
+    PointSet left = evaluate(curve, Points(t.data(), q.size(), 1));
+    for (Index i = 0; i < q.size(); ++i)
+        for (Index d = 0; d < q.dim(); ++d) left(i, d) = q(i, d) - left(i, d);
+    return left;
+}
+
+/// Whether residuals turn to the other side from one sample to the next as often as independent
+/// ones, to two standard deviations.
+bool independent(const PointSet& r) {
+    double turns = 0;
+    for (Index i = 0; i + 1 < r.size(); ++i) {
+        double product = 0;
+        for (Index d = 0; d < r.dim(); ++d) product += r(i, d) * r(i + 1, d);
+        if (product < 0) ++turns;
+    }
+    const auto steps = static_cast<double>(r.size() - 1);
+    return turns >= steps / 2 - std::sqrt(steps);
+}
+
+} // namespace
+
+double residual_noise(const Points& q) {
+    const Index m = q.size();
+    if (m < samples_per_span || !(diagonal(q) > 0)) return 0;
+    const std::vector<double> t = noise_aware_parameters(q, Closure::open);
+    for (Index spans = 1; spans * samples_per_span <= m; spans *= 2) {
+        try {
+            const PointSet left = residuals(q, t, spans);
+            if (independent(left))
+                return frobenius_norm(left) / std::sqrt(static_cast<double>(m - spans - degree));
+        } catch (const SolverError&) { // samples crowd at one side of a span
+            return 0;
+        }
+    }
+    return 0;
+}
+
+} // namespace batten
