@@ -2,7 +2,7 @@
 
 build_packages="g++ cmake ninja-build libeigen3-dev libtbb-dev libfmt-dev nlohmann-json3-dev libcli11-dev libocct-data-exchange-dev"
 test_packages="libgtest-dev python3 python3-numpy python3-scipy python3-meshio chromium fonts-dejavu-core"
-
+fuzz_packages="clang libclang-rt-14-dev"
 race_packages="libbenchmark-dev python3 python3-numpy python3-scipy libocct-modeling-algorithms-dev libocct-modeling-data-dev libsisl-dev"
 
 # Installs those of the named packages that are missing, or says the one line that would.
@@ -31,14 +31,19 @@ need() {
 
 # The viewer's packages, for building the report page and testing it in a browser.
 need_viewer() {
+    local log
     command -v npm >/dev/null || need nodejs npm
     [ -d viewer/node_modules ] && [ viewer/node_modules -nt viewer/package-lock.json ] && return
     echo "installing the viewer's packages"
-    if ! npm ci --prefix viewer --silent --no-audit --no-fund >/dev/null 2>&1; then
+    log=$(mktemp)
+    if ! npm ci --prefix viewer --no-audit --no-fund >"$log" 2>&1; then
         rm -rf viewer/node_modules
-        echo "the viewer's packages could not be installed: the page's tests are skipped"
-        return
+        tail -n 30 "$log" >&2
+        rm -f "$log"
+        echo "the viewer's packages could not be installed: npm ci in viewer/ failed" >&2
+        exit 1
     fi
+    rm -f "$log"
     touch viewer/node_modules
 }
 
@@ -46,7 +51,7 @@ need_viewer() {
 build() {
     local preset=$1 log
     log=$(mktemp)
-    if ! { cmake --preset "$preset" "${@:2}" && cmake --build "build/$preset"; } >"$log" 2>&1; then
+    if ! { cmake --preset "$preset" "${@:2}" && cmake --build --preset "$preset"; } >"$log" 2>&1; then
         tail -n 60 "$log" >&2
         rm -f "$log"
         exit 1

@@ -1,10 +1,15 @@
 #pragma once
 
+#include "reference.hpp"
+
 #include <batten/batten.hpp>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <gtest/gtest.h>
+#include <iostream>
 #include <random>
 #include <string>
 
@@ -57,18 +62,18 @@ inline double largest_difference(const PointSet& a, const PointSet& b) {
     return largest;
 }
 
-/// Dense entry of the collocation matrix of one axis, from the definition of the B-splines alone.
-inline double basis_by_recursion(const KnotVector& k, Index i, int p, double t) {
-    if (p == 0)
-        return (t >= k[i] && t < k[i + 1]) || (t == k.end() && t == k[i + 1] && k[i] < k[i + 1])
-                   ? 1.0
-                   : 0.0;
-    double sum = 0;
-    if (k[i + p] > k[i]) sum += (t - k[i]) / (k[i + p] - k[i]) * basis_by_recursion(k, i, p - 1, t);
-    if (k[i + p + 1] > k[i + 1])
-        sum +=
-            (k[i + p + 1] - t) / (k[i + p + 1] - k[i + 1]) * basis_by_recursion(k, i + 1, p - 1, t);
-    return sum;
+/// Path of a file of the shared test data.
+inline std::string shared(const std::string& name) {
+    return std::string(BATTEN_SHARED_DATA) + "/" + name;
 }
 
 } // namespace batten::testing
+
+/// Ends a test whose shared data are absent: failed where CI is set, else named as not run.
+#define BATTEN_NEEDS_SHARED(file)                                                                  \
+    if (!std::filesystem::exists(batten::testing::shared(file))) {                                 \
+        if (std::getenv("CI") != nullptr) FAIL() << "shared data absent: " << (file);              \
+        std::cout << "NOT RUN: " << test_info_->test_suite_name() << '.' << test_info_->name()     \
+                  << ": shared data absent: " << (file) << std::endl;                              \
+        GTEST_SKIP();                                                                              \
+    }

@@ -2,33 +2,18 @@
 import json
 import os
 import pathlib
+import pty
 import re
+import select
 import signal
 import subprocess
 import tempfile
-import time
 import unittest
 
 import numpy as np
-from scipy.interpolate import BSpline
+from scipy.interpolate import BSpline, make_lsq_spline
 
-BATTEN = os.environ["BATTEN"]
-ROOT = pathlib.Path(os.environ["BATTEN_ROOT"])
-SHARED = ROOT.parent / "shared" / "data"
-
-
-def evaluate(spline, *parameters):
-    """Points of a written spline over the grid of parameters, by SciPy alone."""
-    points = np.array(spline["control_points"]).reshape(*spline["control_shape"], -1)
-    for axis, t in enumerate(parameters):
-        one = BSpline(np.array(spline["knots"][axis]), np.moveaxis(points, axis, 0), spline["degree"][axis])
-        points = np.moveaxis(one(t), 0, axis)
-    return points
-
-
-def chord(points):
-    length = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    return length / length[-1]
+from judge import BATTEN, GUARD, ORDINARY, ROOT, airfoils, chord, evaluate, shared
 
 
 class Command(unittest.TestCase):
@@ -40,7 +25,7 @@ class Command(unittest.TestCase):
         self._folder.cleanup()
 
     def run_batten(self, *arguments, stdin=None):
-        return subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, input=stdin, capture_output=True, text=True, timeout=120)
+        return subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, input=stdin, capture_output=True, text=True, timeout=GUARD)
 
     def good(self, *arguments, stdin=None):
         done = self.run_batten(*arguments, stdin=stdin)
@@ -67,9 +52,7 @@ class Command(unittest.TestCase):
 
 class Fits(Command):
     def test_profile(self):
-        profile = SHARED / "profile205.csv"
-        if not profile.exists():
-            self.skipTest("shared data absent: profile205.csv")
+        profile = shared(self, "profile205.csv")
         self.good("fit", profile, "--control-points", 20, "-o", "a.json", "-o", "a.svg", "--summary", "s.json")
         summary, spline = self.read_json("s.json"), self.read_json("a.json")
         data = np.loadtxt(profile, delimiter=",", skiprows=1)
@@ -80,14 +63,11 @@ class Fits(Command):
         self.assertEqual((summary["samples"], summary["dim"], summary["control_shape"], summary["termination"]), (205, 2, [20], "converged"))
         self.assertTrue((self.folder / "a.svg").read_text().startswith("<svg"))
         # the least-squares optimum itself, by SciPy
-        from scipy.interpolate import make_lsq_spline
         best = make_lsq_spline(chord(data), data, np.array(spline["knots"][0]), 3)
         np.testing.assert_allclose(spline["control_points"], best.c, atol=1e-10)
 
     def test_terrain(self):
-        terrain = SHARED / "terrain344x403.npy"
-        if not terrain.exists():
-            self.skipTest("shared data absent: terrain344x403.npy")
+        terrain = shared(self, "terrain344x403.npy")
         self.good("fit", terrain, "--heights", "--control-points", "90x100", "-o", "t.json", "--summary", "s.json")
         summary, spline = self.read_json("s.json"), self.read_json("t.json")
         heights = np.load(terrain)
@@ -142,11 +122,14 @@ class Fits(Command):
         np.testing.assert_allclose(a["control_points"], b["control_points"], atol=1e-12)
 
     def test_every_airfoil_is_read(self):
-        files = sorted((SHARED / "airfoils").glob("*.dat"))
-        if not files:
-            self.skipTest("shared data absent: airfoils")
+        files = airfoils(self)
+        self.assertGreater(len(files), 100)
         for file in files:
-            self.good("fit", file, "-n", 16, "-q")
+            rows = re.findall(r"^\s*(-?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s+(-?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*$", file.read_text(errors="replace"), re.M)
+            found = json.loads(self.good("fit", file, "-n", 16, "-q", "--summary", "-"))
+            # every pair of numbers is a point, but for a line of counts and a leading edge that stands twice
+            self.assertLessEqual(found["samples"], len(rows), file.name)
+            self.assertGreaterEqual(found["samples"], len(rows) - 2, file.name)
 
 
 class Refusals(Command):
@@ -188,12 +171,27 @@ class Refusals(Command):
         self.bad(2, "a.foo: unknown extension '.foo'; known: .json, .svg, .obj, .g2, .stl, .vts, .vtu, .csv, .step, .stp, .igs, .iges", "fit", "r.csv", "-n", 8, "-o", "a.foo")
         self.bad(3, "no/a.json: the folder no does not exist", "fit", "r.csv", "-n", 8, "-o", "no/a.json")
         self.bad(3, "no/s.json: the folder no does not exist", "fit", "r.csv", "-n", 8, "--summary", "no/s.json")
-        if os.geteuid() != 0:
-            (self.folder / "r.csv").chmod(0)
-            self.bad(3, "r.csv: cannot be read: Permission denied", "fit", "r.csv", "-n", 8)
+
+    def test_modes_of_files_and_folders_are_respected(self):
+        def ordinary(*arguments):
+            done = subprocess.run([*ORDINARY, BATTEN, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
+            return done.returncode, done.stderr
+
+        self.write("old.json", "old")
+        (self.folder / "r.csv").chmod(0)
+        self.assertEqual(ordinary("fit", "r.csv", "-n", 8), (3, "batten: r.csv: cannot be read: Permission denied\n"))
+        (self.folder / "r.csv").chmod(0o644)
+        self.folder.chmod(0o500)
+        before = sorted(self.folder.iterdir())
+        status, words = ordinary("fit", "r.csv", "-n", 8, "-q", "-o", "old.json", "-o", "new.svg")
+        self.assertEqual(status, 3, words)
+        self.assertRegex(words, r"^batten: (old\.json|new\.svg): .*Permission denied\n$")
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+        self.assertEqual((self.folder / "old.json").read_text(), "old")
+        self.folder.chmod(0o700)
 
     def test_a_full_disk_leaves_nothing(self):
-        done = subprocess.run(f"{BATTEN} generate rose > /dev/full", shell=True, capture_output=True, text=True)
+        done = subprocess.run(f"{BATTEN} generate rose > /dev/full", shell=True, capture_output=True, text=True, timeout=GUARD)
         self.assertEqual(done.returncode, 3)
         self.assertEqual(done.stderr, "batten: standard output: cannot be written: No space left on device\n")
 
@@ -246,6 +244,8 @@ class Refusals(Command):
         ends = np.loadtxt(self.folder / "r.csv", delimiter=",")[[0, -1]]
         np.testing.assert_allclose(evaluate(self.read_json("e.json"), np.array([0.0, 1.0])), ends, atol=1e-13)
         self.assertEqual(self.read_json("e_s.json")["interpolated"], 2)
+        self.good("fit", "r.csv", "-n", 10, "-o", "f.json")  # not held, they are missed
+        self.assertGreater(abs(evaluate(self.read_json("f.json"), np.array([0.0, 1.0])) - ends).max(), 1e-6)
 
     def test_reproduce(self):
         table = self.good("reproduce", "mlspia", "--folder", "papers")
@@ -262,16 +262,40 @@ class Manners(Command):
     def test_no_argument_says_what_to_do_next(self):
         self.assertIn("batten fit wing.csv", self.good())
 
+    def listen(self, terminal, word):
+        """What a program says on its terminal, until it says `word` (None: until it ends)."""
+        said = ""
+        while word is None or word not in said:
+            self.assertTrue(select.select([terminal], [], [], GUARD)[0], f"silent after {said!r}")
+            try:
+                heard = os.read(terminal, 65536).decode()
+            except OSError:  # the other end is closed
+                heard = ""
+            if not heard:
+                self.assertIsNone(word, f"it ended without {word!r}: {said!r}")
+                break
+            said += heard
+        return said
+
     def test_interrupt_leaves_nothing(self):
+        """Interrupted once the fit itself says that it is under way."""
         self.good("generate", "rose", "--samples", 200000, "-o", "big.csv")
         before = sorted(self.folder.iterdir())
-        for work in (["-n", "90000", "--method", "lspia", "--stop-gradient", "1e-300", "--max-iterations", "100000000"], ["--tolerance", "1e-10"]):
-            fit = subprocess.Popen([BATTEN, "fit", "big.csv", *work, "-o", "x.json"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
-            time.sleep(1.5)
-            fit.send_signal(signal.SIGINT)
-            _, words = fit.communicate(timeout=60)
-            self.assertEqual(fit.returncode, 130, work)
-            self.assertEqual(words, "batten: interrupted; nothing was written\n")
+        for word, *work in (("iteration ", "-n", "90000", "--method", "lspia", "--stop-gradient", "1e-300", "--max-iterations", "100000000"),
+                            ("fitting", "--tolerance", "1e-10")):
+            terminal, other = pty.openpty()
+            fit = subprocess.Popen([BATTEN, "fit", "big.csv", *work, "-o", "x.json"], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=other)
+            os.close(other)
+            try:
+                self.listen(terminal, word)
+                fit.send_signal(signal.SIGINT)
+                words = self.listen(terminal, None)
+                self.assertEqual(fit.wait(GUARD), 130, work)
+            finally:
+                fit.kill()
+                fit.wait()
+                os.close(terminal)
+            self.assertTrue(words.endswith("batten: interrupted; nothing was written\r\n"), words)
             self.assertEqual(sorted(self.folder.iterdir()), before)
 
 

@@ -190,12 +190,11 @@ TEST_F(Files, bad_json_is_refused) {
 
 TEST_F(Files, a_failed_write_leaves_the_old_file) {
     write_file(path("a.json"), "old");
-    std::filesystem::permissions(folder_, std::filesystem::perms::owner_read |
-                                              std::filesystem::perms::owner_exec);
-    if (::geteuid() != 0) { // root writes anywhere
-        EXPECT_THROW(write_file(path("a.json"), "new"), FileError);
-    }
-    std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
+    // where no file can be made: a folder stands at the place of the output
+    std::filesystem::create_directories(path("b.json/full"));
+    EXPECT_THROW(write_file(path("b.json"), "new"), FileError);
+    std::filesystem::remove_all(path("b.json"));
+    EXPECT_EQ(read_file(path("a.json")), "old");
     EXPECT_EQ(message_of<FileError>([] { write_file("/dev/full/x", "new"); }),
               "/dev/full/x: cannot be written: Not a directory");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}),
@@ -227,14 +226,12 @@ TEST(Sampling, stays_within_the_chord) {
             for (std::size_t j = 0; j + 1 < t[1].size(); j += 3) {
                 const auto at = [&](double u, double v) { return spline(std::array{u, v}); };
                 const auto a = at(t[0][i], t[1][j]);
-                const auto b = at(t[0][i + 1], t[1][j]);
                 const auto c = at(t[0][i + 1], t[1][j + 1]);
                 const auto m = at((t[0][i] + t[0][i + 1]) / 2, (t[1][j] + t[1][j + 1]) / 2);
                 // half-way along the diagonal that parts the cell into triangles
                 double square = 0;
                 for (std::size_t d = 0; d < 3; ++d) square += std::pow(m[d] - (a[d] + c[d]) / 2, 2);
                 worst = std::max(worst, std::sqrt(square));
-                EXPECT_EQ(b.size(), 3U);
             }
         EXPECT_LT(worst, chord);
         EXPECT_GT(worst, chord / 50); // and not far denser than that

@@ -68,11 +68,11 @@ TEST(Direct, leaves_a_residual_orthogonal_to_every_b_spline) {
         const KnotVector k = knots_from_parameters(t, 3, 25, closure);
         const auto system = assemble({k}, testing::sequence(q), {{t}, {}});
         const PointSet p = uncentred(solve_direct(*system), system->centre());
-        const Collocation a(k, t);
-        PointSet residual = q;
-        add_scaled(residual, -1, a.apply(p));
-        EXPECT_LT(frobenius_norm(a.apply_transposed(residual)),
-                  1e-12 * frobenius_norm(q)); // A^T (Q - A P) = 0
+        const reference::Matrix a = reference::collocation(k, t);
+        const reference::Matrix points = reference::matrix(q);
+        const reference::Matrix residual = points - a * reference::matrix(p);
+        EXPECT_LT((a.transpose() * residual).norm(), 1e-12L * points.norm()); // A^T (Q - A P) = 0
+        EXPECT_LT(reference::difference(reference::least_squares(a, points), p), 1e-11);
     }
 }
 
@@ -87,21 +87,11 @@ TEST(Direct, a_grid_is_solved_axis_by_axis) {
     const auto system = assemble(axes, samples, t);
     const PointSet p = solve_direct(*system);
     EXPECT_LT(frobenius_norm(system->gradient(p)), 1e-11 * frobenius_norm(system->rhs()));
-    // the same from the dense Kronecker product, by Eigen
-    Eigen::MatrixXd a = Eigen::MatrixXd::Ones(1, 1);
-    for (std::size_t k = 0; k < 3; ++k) {
-        Eigen::MatrixXd one(static_cast<Index>(t.axes[k].size()), n[k]);
-        for (Index j = 0; j < one.rows(); ++j)
-            for (Index i = 0; i < n[k]; ++i)
-                one(j, i) = testing::basis_by_recursion(axes[k], i, axes[k].degree(),
-                                                        t.axes[k][static_cast<std::size_t>(j)]);
-        const Eigen::MatrixXd before = a;
-        a.resize(before.rows() * one.rows(), before.cols() * one.cols());
-        for (Index r = 0; r < before.rows(); ++r)
-            for (Index c = 0; c < before.cols(); ++c)
-                a.block(r * one.rows(), c * one.cols(), one.rows(), one.cols()) =
-                    before(r, c) * one;
-    }
+    // the same from the dense Kronecker product
+    reference::Matrix product = reference::Matrix::Ones(1, 1);
+    for (std::size_t k = 0; k < 3; ++k)
+        product = reference::kronecker(product, reference::collocation(axes[k], t.axes[k]));
+    const Eigen::MatrixXd a = product.cast<double>();
     const Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>> q(samples.points.data(),
                                                                              samples.size(), 3);
     const Eigen::MatrixXd best = a.colPivHouseholderQr().solve(Eigen::MatrixXd(q));
@@ -117,10 +107,7 @@ TEST(ExtremeEigenvalues, agree_with_a_dense_singular_value_decomposition) {
             const auto system = curve_system(3, n, Closure::open, 4 * n);
             const auto t = random_parameters(4 * n, 21);
             const KnotVector k = uniform_knots(3, n, 0, 1);
-            Eigen::MatrixXd a(4 * n, n);
-            for (Index j = 0; j < 4 * n; ++j)
-                for (Index i = 0; i < n; ++i)
-                    a(j, i) = testing::basis_by_recursion(k, i, 3, t[static_cast<std::size_t>(j)]);
+            const Eigen::MatrixXd a = reference::collocation(k, t).cast<double>();
             const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues();
             const ExtremeEigenvalues e = extreme_eigenvalues(*system, tolerance);
             const double allowed = std::max(
@@ -134,10 +121,11 @@ TEST(NormalSystem, energy_is_the_sum_of_squares) {
     const auto t = random_parameters(200, 21);
     const auto system = curve_system(3, 12, Closure::open);
     const PointSet p = random_points(12, 2, 3);
-    PointSet residual = centred(random_points(200, 2, 22), system->centre());
-    add_scaled(residual, -1, Collocation(system->axes()[0], t).apply(p));
-    EXPECT_NEAR(system->energy(p) + system->data_energy(), inner_product(residual, residual),
-                1e-10);
+    const reference::Matrix residual = reference::matrix(random_points(200, 2, 22)) -
+                                       reference::collocation(system->axes()[0], t) *
+                                           reference::matrix(uncentred(p, system->centre()));
+    EXPECT_NEAR(system->energy(p) + system->data_energy(),
+                static_cast<double>(residual.squaredNorm()), 1e-10);
 }
 
 TEST(Collocation, names_the_spans_that_lack_samples) {
@@ -165,11 +153,7 @@ TEST(Collocation, the_closed_conditions_agree_with_the_rank) {
         for (double& x : t)
             x = std::uniform_real_distribution<double>(0, trial % 2 == 0 ? 1.0 : 0.7)(random);
         std::sort(t.begin(), t.end());
-        const Collocation a(k, t);
-        Eigen::MatrixXd full = Eigen::MatrixXd::Zero(a.rows(), 5);
-        for (Index j = 0; j < a.rows(); ++j)
-            for (int r = 0; r <= 2; ++r) full(j, a.column(j, r)) += a.value(j, r);
-        Eigen::FullPivLU<Eigen::MatrixXd> lu(full);
+        Eigen::FullPivLU<Eigen::MatrixXd> lu(reference::collocation(k, t).cast<double>());
         lu.setThreshold(1e-10);
         EXPECT_EQ(lu.rank() == 5, !undetermined(k, t).has_value()) << trial;
     }
@@ -191,6 +175,31 @@ TEST(Directions, get_the_lengths_that_leave_the_least_error) {
     constraints.add_direction(axes, std::array{0.8}, first, two, "two");
     const Constraints local = constraints.centred(system->centre());
     const PointSet best = solve_direct(*system, local);
+    {
+        // both coordinates in one dense problem: a direction says that the cross product vanishes
+        const auto t = random_parameters(200, 21);
+        const reference::Matrix a = reference::collocation(axes[0], t);
+        const reference::Matrix q = reference::matrix(random_points(200, 2, 22));
+        reference::Matrix both = reference::Matrix::Zero(400, 28);
+        both.topLeftCorner(200, 14) = both.bottomRightCorner(200, 14) = a;
+        reference::Matrix right(400, 1);
+        right << q.col(0), q.col(1);
+        reference::Matrix c = reference::Matrix::Zero(4, 28);
+        reference::Matrix d = reference::Matrix::Zero(4, 1);
+        c.block(0, 0, 1, 14) = c.block(1, 14, 1, 14) = reference::collocation(axes[0], {0.3});
+        d(0) = 0.2L;
+        d(1) = -0.1L;
+        for (const auto& [row, at, direction] :
+             {std::tuple{2, 0.3, one}, std::tuple{3, 0.8, two}}) {
+            const reference::Matrix slope = reference::collocation(axes[0], {at}, 1);
+            c.block(row, 0, 1, 14) = slope * direction[1];
+            c.block(row, 14, 1, 14) = -slope * direction[0];
+        }
+        const reference::Matrix exact = reference::least_squares(both, right, c, d);
+        reference::Matrix planar(14, 2);
+        planar << exact.topRows(14), exact.bottomRows(14);
+        EXPECT_LT(reference::difference(planar, uncentred(best, system->centre())), 1e-10);
+    }
     const PointSet values = local.apply(best);
     EXPECT_NEAR(values(1, 0) * one[1] - values(1, 1) * one[0], 0, 1e-10);
     EXPECT_NEAR(values(2, 0) * two[1] - values(2, 1) * two[0], 0, 1e-10);
@@ -220,6 +229,27 @@ TEST(Constraints, those_that_follow_from_others_are_dropped) {
     other.fix(0, std::array{0.5, 0.26}, "moved");
     EXPECT_EQ(message_of<ConstraintConflict>([&] { other.independent(system->size()); }),
               "constraints contradict each other: begin, moved");
+}
+
+TEST(Constraints, give_the_dense_solution_with_equalities) {
+    for (Closure closure : {Closure::open, Closure::closed}) {
+        const auto system = curve_system(3, 16, closure);
+        const auto& axes = system->axes();
+        Constraints constraints(2);
+        constraints.add(axes, std::array{0.1}, {}, std::array{0.3, -0.2}, "a point");
+        constraints.add(axes, std::array{0.6}, {}, std::array{-0.4, 0.5}, "another");
+        constraints.add(axes, std::array{0.6}, std::array{1}, std::array{2.0, 1.0}, "a derivative");
+        const PointSet found = uncentred(
+            solve_direct(*system, constraints.centred(system->centre())), system->centre());
+        reference::Matrix c(3, 16);
+        c << reference::collocation(axes[0], {0.1, 0.6}), reference::collocation(axes[0], {0.6}, 1);
+        reference::Matrix d(3, 2);
+        d << 0.3L, -0.2L, -0.4L, 0.5L, 2, 1;
+        const reference::Matrix exact =
+            reference::least_squares(reference::collocation(axes[0], random_parameters(200, 21)),
+                                     reference::matrix(random_points(200, 2, 22)), c, d);
+        EXPECT_LT(reference::difference(exact, found), 1e-11);
+    }
 }
 
 } // namespace
