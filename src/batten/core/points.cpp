@@ -66,10 +66,4 @@ double largest_length(const PointSet& a) {
     return std::sqrt(largest);
 }
 
-double distance(std::span<const double> a, std::span<const double> b) {
-    double square = 0;
-    for (std::size_t d = 0; d < a.size(); ++d) square += (a[d] - b[d]) * (a[d] - b[d]);
-    return std::sqrt(square);
-}
-
 } // namespace batten

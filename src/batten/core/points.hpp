@@ -2,6 +2,7 @@
 
 #include <batten/core/index.hpp>
 
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -91,6 +92,10 @@ double frobenius_norm(const PointSet& a);
 double largest_length(const PointSet& a);
 
 /// Euclidean distance of two points of one dimension.
-double distance(std::span<const double> a, std::span<const double> b);
+inline double distance(std::span<const double> a, std::span<const double> b) {
+    double square = 0;
+    for (std::size_t d = 0; d < a.size(); ++d) square += (a[d] - b[d]) * (a[d] - b[d]);
+    return std::sqrt(square);
+}
 
 } // namespace batten

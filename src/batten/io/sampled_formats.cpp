@@ -24,8 +24,10 @@ struct Sampled {
 
     explicit Sampled(const Scene& scene, const Spline& spline)
         : axes(sampling(spline, chord_of(scene, spline))), points(evaluate_grid(spline, axes)) {}
-    Index size(std::size_t k) const {
-        return k < axes.size() ? static_cast<Index>(axes[k].size()) : 1;
+    GridIndex grid() const {
+        std::vector<Index> shape;
+        for (const auto& t : axes) shape.push_back(static_cast<Index>(t.size()));
+        return GridIndex(shape);
     }
 };
 
@@ -97,19 +99,19 @@ void add_face(Triangles& triangles, const PointSet& points, Index rows, Index co
 }
 
 void add_volume(Triangles& triangles, const Sampled& s) {
-    const std::array<Index, 3> n{s.size(0), s.size(1), s.size(2)};
+    const GridIndex grid = s.grid();
     for (std::size_t axis = 0; axis < 3; ++axis)
         for (bool end : {false, true}) {
             const std::size_t e = (axis + 1) % 3;
             const std::size_t f = (axis + 2) % 3;
             add_face(
-                triangles, s.points, n[e], n[f],
+                triangles, s.points, grid.length(e), grid.length(f),
                 [&](Index i, Index j) {
-                    std::array<Index, 3> at{};
-                    at[axis] = end ? n[axis] - 1 : 0;
+                    GridIndex::Place at{};
+                    at[axis] = end ? grid.length(axis) - 1 : 0;
                     at[e] = i;
                     at[f] = j;
-                    return (at[0] * n[1] + at[1]) * n[2] + at[2];
+                    return grid.at(at);
                 },
                 !end);
         }
@@ -127,8 +129,11 @@ std::string stl_binary(const Scene& scene) {
         const Sampled s(scene, *spline);
         if (spline->axis_count() == 2)
             add_face(
-                triangles, s.points, s.size(0), s.size(1),
-                [&](Index i, Index j) { return i * s.size(1) + j; }, false);
+                triangles, s.points, s.grid().length(0), s.grid().length(1),
+                [grid = s.grid()](Index i, Index j) {
+                    return grid.at({i, j});
+                },
+                false);
         else
             add_volume(triangles, s);
     }
@@ -146,14 +151,11 @@ std::string evaluated_text(const Scene& scene) {
         fmt::format_to(to, "{}{}",
                        s.points.dim() <= 3 ? std::string(1, "xyz"[d]) : fmt::format("x{}", d),
                        d + 1 < s.points.dim() ? ',' : '\n');
-    for (Index i = 0; i < s.points.size(); ++i) {
-        Index rest = i;
-        std::array<double, 3> t{};
-        for (std::size_t k = axes; k-- > 0; rest /= s.size(k))
-            t[k] = s.axes[k][static_cast<std::size_t>(rest % s.size(k))];
-        for (std::size_t k = 0; k < axes; ++k) fmt::format_to(to, "{},", t[k]);
+    s.grid().for_each([&](const GridIndex::Place& place, Index i) {
+        for (std::size_t k = 0; k < axes; ++k)
+            fmt::format_to(to, "{},", s.axes[k][static_cast<std::size_t>(place[k])]);
         fmt::format_to(to, "{}\n", fmt::join(s.points[i], ","));
-    }
+    });
     return fmt::to_string(out);
 }
 
@@ -190,36 +192,28 @@ struct Cells {
         ++count;
     }
     /// Lines along every axis of a net of points, or its cells where it has them.
-    void add_net(Index first, const std::vector<Index>& shape, bool filled) {
+    void add_net(Index first, const GridIndex& grid, bool filled) {
         constexpr int line = 3;
         constexpr int quad = 9;
         constexpr int hexahedron = 12;
-        const Index n1 = shape.size() > 1 ? shape[1] : 1;
-        const Index n2 = shape.size() > 2 ? shape[2] : 1;
-        const auto at = [&](Index i, Index j, Index k) { return first + (i * n1 + j) * n2 + k; };
-        for (Index i = 0; i < shape[0]; ++i)
-            for (Index j = 0; j < n1; ++j)
-                for (Index k = 0; k < n2; ++k) {
-                    const bool a = i + 1 < shape[0];
-                    const bool b = j + 1 < n1;
-                    const bool c = k + 1 < n2;
-                    if (filled && shape.size() == 3) {
-                        if (a && b && c)
-                            add({at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k),
-                                 at(i, j, k + 1), at(i + 1, j, k + 1), at(i + 1, j + 1, k + 1),
-                                 at(i, j + 1, k + 1)},
-                                hexahedron);
-                    } else if (filled && shape.size() == 2) {
-                        if (a && b)
-                            add({at(i, j, 0), at(i + 1, j, 0), at(i + 1, j + 1, 0),
-                                 at(i, j + 1, 0)},
-                                quad);
-                    } else {
-                        if (a) add({at(i, j, k), at(i + 1, j, k)}, line);
-                        if (b) add({at(i, j, k), at(i, j + 1, k)}, line);
-                        if (c) add({at(i, j, k), at(i, j, k + 1)}, line);
-                    }
-                }
+        grid.for_each([&](const GridIndex::Place& place, Index position) {
+            const Index here = first + position;
+            const auto next = [&](std::size_t axis) { return here + grid.stride(axis); };
+            const auto more = [&](std::size_t axis) { return place[axis] + 1 < grid.length(axis); };
+            if (filled && grid.axis_count() == 3) {
+                const Index up = grid.stride(0);
+                const Index across = grid.stride(1);
+                if (more(0) && more(1) && more(2))
+                    add({here, here + up, here + up + across, here + across, here + 1,
+                         here + up + 1, here + up + across + 1, here + across + 1},
+                        hexahedron);
+            } else if (filled && grid.axis_count() == 2) {
+                if (more(0) && more(1)) add({here, next(0), next(0) + 1, next(1)}, quad);
+            } else {
+                for (std::size_t axis = 0; axis < grid.axis_count(); ++axis)
+                    if (more(axis)) add({here, next(axis)}, line);
+            }
+        });
     }
 };
 
@@ -228,10 +222,12 @@ struct Cells {
 std::string vts_text(const Scene& scene) {
     check_space(scene.spline, "a .vts");
     const Sampled s(scene, scene.spline);
+    const GridIndex grid = s.grid();
     // VTK's first axis is fastest, ours the last: the extents are turned round
-    const std::string extent = fmt::format("0 {} 0 {} 0 {}", s.size(s.axes.size() - 1) - 1,
-                                           s.axes.size() > 1 ? s.size(s.axes.size() - 2) - 1 : 0,
-                                           s.axes.size() > 2 ? s.size(0) - 1 : 0);
+    const auto steps = [&](std::size_t from_last) {
+        return from_last <= grid.axis_count() ? grid.length(grid.axis_count() - from_last) - 1 : 0;
+    };
+    const std::string extent = fmt::format("0 {} 0 {} 0 {}", steps(1), steps(2), steps(3));
     std::string text = fmt::format(fmt::runtime(vtk_head), "StructuredGrid",
                                    fmt::format(" WholeExtent=\"{}\"", extent),
                                    fmt::format("Extent=\"{}\"", extent));
@@ -247,10 +243,8 @@ std::string vtu_text(const Scene& scene) {
     const PointSet& control = scene.spline.control_points();
     Cells cells;
     for (Index i = 0; i < samples; ++i) cells.add({i}, 1);
-    cells.add_net(samples, scene.spline.control_shape(), false);
-    std::vector<Index> shape;
-    for (const auto& axis : s.axes) shape.push_back(static_cast<Index>(axis.size()));
-    cells.add_net(samples + control.size(), shape, true);
+    cells.add_net(samples, GridIndex(scene.spline.control_shape()), false);
+    cells.add_net(samples + control.size(), s.grid(), true);
     const Index total = samples + control.size() + s.points.size();
     std::string text =
         fmt::format(fmt::runtime(vtk_head), "UnstructuredGrid", "",

@@ -1,5 +1,6 @@
 #include <batten/io/svg.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/io/sampling.hpp>
 #include <batten/io/svg_parts.hpp>
 
@@ -19,10 +20,6 @@ constexpr double margin = 36;
 constexpr double head = 24;          // for the legend
 constexpr Index most_quads = 90;     // along an axis
 constexpr Index lines_per_face = 16; // iso-lines along an axis, at most
-
-double dot(const Vector& a, const Vector& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 Vector in_space(std::span<const double> p) {
     return {p[0], p[1], p.size() > 2 ? p[2] : 0.0};
@@ -132,7 +129,7 @@ void add_face(const Face& face, const View& view, std::vector<Piece>& pieces) {
             }
             const Vector n{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                            a[0] * b[1] - a[1] * b[0]};
-            const double length = std::sqrt(dot(n, n));
+            const double length = norm(n);
             // light from over the left shoulder
             const Vector light{-0.25, -0.55, 0.8};
             const double bright = length > 0 ? 0.62 + 0.38 * std::abs(dot(n, light)) / length : 0.8;

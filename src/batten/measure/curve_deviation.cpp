@@ -10,7 +10,7 @@ namespace batten {
 
 namespace {
 
-constexpr Index chunk_samples = 1 << 14;
+constexpr Index block_samples = 1 << 14;
 constexpr Index block = 128;
 
 /// One polynomial piece: coefficients (degree + 1) x dim in T_k(s), relative to `centre`.
@@ -78,10 +78,10 @@ std::vector<double> curve_deviations(const Spline& curve, const Points& points,
     const KnotVector& knots = curve.axis(0);
     const Index m = points.size();
     std::vector<double> result(static_cast<std::size_t>(m));
-    for_each_chunk((m + chunk_samples - 1) / chunk_samples, [&](Index chunk) {
-        const Index end = std::min(m, (chunk + 1) * chunk_samples);
+    for_each_block(m, block_samples, [&](const Block& samples) {
+        const Index end = samples.end;
         const double* t = parameters.data();
-        for (Index i = chunk * chunk_samples; i < end;) {
+        for (Index i = samples.begin; i < end;) {
             const double inside = knots.wrapped(t[i]);
             const double shift = t[i] - inside;
             const Index span = knots.span(inside);

@@ -9,20 +9,13 @@ namespace batten {
 
 namespace {
 
-constexpr Index chunk_size = 4096;
+constexpr Index block_size = 4096;
 
 std::vector<double> lengths(const PointSet& values, const Points& points) {
     std::vector<double> result(static_cast<std::size_t>(points.size()));
-    const Index dim = points.dim();
-    for_each_chunk((points.size() + chunk_size - 1) / chunk_size, [&](Index chunk) {
-        const Index end = std::min(points.size(), (chunk + 1) * chunk_size);
-        for (Index i = chunk * chunk_size; i < end; ++i) {
-            const double* a = values.data() + i * dim;
-            const double* b = points.data() + i * dim;
-            double square = 0;
-            for (Index d = 0; d < dim; ++d) square += (a[d] - b[d]) * (a[d] - b[d]);
-            result[static_cast<std::size_t>(i)] = std::sqrt(square);
-        }
+    for_each_block(points.size(), block_size, [&](const Block& block) {
+        for (Index i = block.begin; i < block.end; ++i)
+            result[static_cast<std::size_t>(i)] = distance(values[i], points[i]);
     });
     return result;
 }

@@ -73,7 +73,8 @@ void shrink(GridSearch& search, std::vector<Index>& n, const std::vector<Index>&
                         std::vector<Index> traded = n;
                         traded[a] += more;
                         traded[b] -= fewer;
-                        if (traded[b] < least[b] || product(traded) >= product(n)) continue;
+                        if (traded[b] < least[b] || GridIndex(traded).size() >= GridIndex(n).size())
+                            continue;
                         if (search(traded) <= 1) {
                             n = traded;
                             any = true;
@@ -92,8 +93,8 @@ void rebalance(GridSearch& search, std::vector<Index>& n, const std::vector<Inde
         const Index first = std::clamp(static_cast<Index>(static_cast<double>(start[0]) * factor),
                                        least[0], most[0]);
         Index missed = least[1] - 1;
-        Index met =
-            std::min(most[1] + 1, (product(n) + first - 1) / first); // no better than what there is
+        Index met = std::min(most[1] + 1, (GridIndex(n).size() + first - 1) /
+                                              first); // no better than what there is
         if (met <= missed + 1 || search({first, met - 1}) > 1) continue;
         --met;
         while (met > missed + 1) {
@@ -173,7 +174,7 @@ GridWithin few_knots(const GridTask& task) {
         for (std::size_t k = 0; k < degree.size(); ++k)
             size.push_back(std::min(task.most[k], std::max<Index>(least[k], 6)));
         const bool met = grow(search, size, task.most);
-        const Index grown = product(size);
+        const Index grown = GridIndex(size).size();
         if (search.best.axis_count() == 0 && !search.conflict.empty())
             throw ConstraintConflict(search.conflict);
         if (met) {

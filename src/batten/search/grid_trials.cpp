@@ -17,12 +17,6 @@ constexpr double reachable = 2.5; // times the tolerance: beyond it pushing does
 
 } // namespace
 
-Index product(const std::vector<Index>& n) {
-    Index result = 1;
-    for (Index k : n) result *= k;
-    return result;
-}
-
 GridSearch::GridSearch(const GridTask& task, std::vector<Spread> spreads)
     : task_(task), spreads_(std::move(spreads)), ascending_(ascending(task.parameters)) {}
 
@@ -48,7 +42,7 @@ double GridSearch::attempt(const std::vector<Index>& n) {
         Trial trial = fitted(axes, task_.samples);
         if (effort == Effort::equalised && trial.worst > 1 && trial.worst < reachable)
             equalise(axes, trial);
-        keep(product(n), trial);
+        keep(GridIndex(n).size(), trial);
         return trial.worst;
     } catch (const SolverError&) {
         return std::numeric_limits<double>::infinity();

@@ -9,9 +9,6 @@
 
 namespace batten {
 
-/// Control points in all.
-Index product(const std::vector<Index>& n);
-
 /// Fits with given numbers of control points and remembers the best that met the tolerance.
 class GridSearch {
   public:

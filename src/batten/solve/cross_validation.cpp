@@ -49,16 +49,12 @@ Quality along_axes(const NormalSystem& system, const std::vector<BandedMatrix>& 
     const auto grams = system.factors();
     PointSet control = system.rhs();
     double trace = 1;
-    Index inner = control.dim();
     for (std::size_t k = grams.size(); k-- > 0;) {
         BandedMatrix sum = *grams[k];
         sum.add(lambda * grams[k]->total(), rough[k]);
         const BandedCholesky factor(sum);
-        const Index n = sum.size();
-        factor.solve(control.data(),
-                     {static_cast<Index>(control.values().size()) / (n * inner), inner});
+        factor.solve(control.data(), along(system.controls(), k, control.dim()));
         trace *= trace_of(*grams[k], factor);
-        inner *= n;
     }
     PointSet image(control.size(), control.dim());
     system.apply(control, image);

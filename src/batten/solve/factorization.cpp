@@ -13,25 +13,19 @@ namespace {
 /// One banded factor per axis.
 class AxisFactorization : public Factorization {
   public:
-    explicit AxisFactorization(const std::vector<const BandedMatrix*>& factors) {
-        for (const BandedMatrix* factor : factors) {
-            axes_.emplace_back(*factor);
-            sizes_.push_back(factor->size());
-        }
+    AxisFactorization(const std::vector<const BandedMatrix*>& factors, const GridIndex& controls)
+        : controls_(controls) {
+        for (const BandedMatrix* factor : factors) axes_.emplace_back(*factor);
     }
     PointSet solve(PointSet b) const override {
-        Index inner = b.dim();
-        for (std::size_t k = axes_.size(); k-- > 0;) {
-            axes_[k].solve(b.data(),
-                           {static_cast<Index>(b.values().size()) / (sizes_[k] * inner), inner});
-            inner *= sizes_[k];
-        }
+        for (std::size_t k = axes_.size(); k-- > 0;)
+            axes_[k].solve(b.data(), along(controls_, k, b.dim()));
         return b;
     }
 
   private:
     std::vector<BandedCholesky> axes_;
-    std::vector<Index> sizes_;
+    GridIndex controls_;
 };
 
 class SparseFactorization : public Factorization {
@@ -65,7 +59,7 @@ class SparseFactorization : public Factorization {
 
 std::unique_ptr<Factorization> factorize(const NormalSystem& system) {
     const auto factors = system.factors();
-    if (!factors.empty()) return std::make_unique<AxisFactorization>(factors);
+    if (!factors.empty()) return std::make_unique<AxisFactorization>(factors, system.controls());
     return std::make_unique<SparseFactorization>(system);
 }
 
@@ -75,7 +69,7 @@ std::unique_ptr<Factorization> factorize_axes(const NormalSystem& system) {
     std::vector<const BandedMatrix*> factors;
     for (const BandedMatrix& factor : nearby) factors.push_back(&factor);
     try {
-        return std::make_unique<AxisFactorization>(factors);
+        return std::make_unique<AxisFactorization>(factors, system.controls());
     } catch (const SolverError&) {
         return nullptr;
     }

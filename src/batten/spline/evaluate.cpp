@@ -3,6 +3,7 @@
 #include <batten/spline/spline.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace batten {
@@ -23,6 +24,12 @@ void check_orders(const Spline& spline, std::span<const int> orders) {
         if (k < 0) throw InvalidInput(fmt::format("evaluate: derivative order {} is negative", k));
 }
 
+void check_finite(std::span<const double> parameter) {
+    for (double t : parameter)
+        if (!std::isfinite(t))
+            throw InvalidInput(fmt::format("evaluate: parameter {} is not a finite number", t));
+}
+
 /// Adds the row of A at a parameter times the control points to `out`.
 void add_point(const ActiveRow& row, const PointSet& control, double* out) {
     const Index dim = control.dim();
@@ -38,6 +45,7 @@ std::vector<double> Spline::operator()(std::span<const double> parameter,
     if (static_cast<Index>(parameter.size()) != axis_count())
         throw InvalidInput(fmt::format("evaluate: {} parameters given for {} axes",
                                        parameter.size(), axis_count()));
+    check_finite(parameter);
     std::vector<double> point(static_cast<std::size_t>(dim()));
     add_point({axes_, parameter, Numbering::stored, orders}, control_, point.data());
     return point;
@@ -50,9 +58,11 @@ PointSet evaluate(const Spline& spline, const Points& parameters, std::span<cons
                                        parameters.dim(), spline.axis_count()));
     PointSet result(parameters.size(), spline.dim());
     for_each_block(parameters.size(), block_size, [&](const Block& block) {
-        for (Index i = block.begin; i < block.end; ++i)
+        for (Index i = block.begin; i < block.end; ++i) {
+            check_finite(parameters[i]);
             add_point({spline.axes(), parameters[i], Numbering::stored, orders},
                       spline.control_points(), result[i].data());
+        }
     });
     return result;
 }
@@ -73,6 +83,7 @@ PointSet evaluate_grid(const Spline& spline, const std::vector<std::vector<doubl
         const auto m = static_cast<Index>(axes[a].size());
         const Index outer = static_cast<Index>(values.size()) / (n * inner);
         std::vector<double> next(static_cast<std::size_t>(outer * m * inner));
+        check_finite(axes[a]);
         std::vector<ActiveFunctions> active;
         for (double t : axes[a])
             active.push_back(active_functions(knots, t, Numbering::stored, order_of(orders, a)));

@@ -14,6 +14,11 @@ struct AxisLayout {
     Index inner = 1;
 };
 
+/// One axis of the points (size x dim) of a grid singled out.
+inline AxisLayout along(const GridIndex& grid, std::size_t axis, Index dim) {
+    return {grid.blocks(axis), grid.stride(axis) * dim};
+}
+
 /// Symmetric banded matrix (n x n): entries (i, i + k) for k = 0 to the bandwidth; i + k goes
 /// around the end when the axis is closed.
 class BandedMatrix {

@@ -148,16 +148,12 @@ void KroneckerSystem::finish() {
 }
 
 void KroneckerSystem::apply(const PointSet& x, PointSet& y) const {
-    PointSet scratch;
-    const PointSet* from = &x;
-    Index inner = x.dim();
-    for (std::size_t k = axes_.size(); k-- > 0;) {
-        const Index n = axes_[k].free_count();
-        const AxisLayout layout{static_cast<Index>(x.values().size()) / (n * inner), inner};
-        if (k + 1 < axes_.size()) scratch = *from;
-        grams_[k].apply(k + 1 < axes_.size() ? scratch.data() : from->data(), y.data(), layout);
-        from = &y;
-        inner *= n;
+    const std::size_t last = axes_.size() - 1;
+    grams_[last].apply(x.data(), y.data(), along(controls_, last, x.dim()));
+    PointSet before;
+    for (std::size_t k = last; k-- > 0;) {
+        before = y;
+        grams_[k].apply(before.data(), y.data(), along(controls_, k, x.dim()));
     }
 }
 

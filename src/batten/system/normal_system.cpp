@@ -21,8 +21,9 @@ PointSet shifted(const PointSet& control, const std::vector<double>& centre, dou
 
 NormalSystem::NormalSystem(std::vector<KnotVector> axes, std::vector<double> centre)
     : axes_(std::move(axes)),
+      controls_(free_shape(axes_)),
       centre_(std::move(centre)),
-      rhs_(GridIndex(free_shape(axes_)).size(), static_cast<Index>(centre_.size())) {}
+      rhs_(controls_.size(), static_cast<Index>(centre_.size())) {}
 
 PointSet NormalSystem::gradient(const PointSet& control) const {
     PointSet result(size(), dim());

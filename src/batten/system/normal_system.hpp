@@ -26,7 +26,9 @@ class NormalSystem {
     virtual std::unique_ptr<NormalSystem> clone() const = 0;
 
     /// Free control points N of the spline.
-    Index size() const { return rhs_.size(); }
+    Index size() const { return controls_.size(); }
+    /// How they lie over the axes.
+    const GridIndex& controls() const { return controls_; }
     Index dim() const { return rhs_.dim(); }
     /// A^T D (Q - centre): (N x dim).
     const PointSet& rhs() const { return rhs_; }
@@ -68,6 +70,7 @@ class NormalSystem {
     NormalSystem(std::vector<KnotVector> axes, std::vector<double> centre);
 
     std::vector<KnotVector> axes_;
+    GridIndex controls_;
     std::vector<double> centre_;
     PointSet rhs_;
     double data_energy_ = 0;

@@ -23,7 +23,6 @@ GridIndex half_stencil(const std::vector<KnotVector>& axes) {
 
 StencilSystem::StencilSystem(std::vector<KnotVector> axes, std::vector<double> centre)
     : NormalSystem(std::move(axes), std::move(centre)),
-      controls_(free_shape(axes_)),
       places_(half_stencil(axes_)),
       same_slice_(places_.stride(0)) {
     places_.for_each([&](GridIndex::Place offset, Index) {

@@ -42,7 +42,6 @@ class StencilSystem : public NormalSystem {
     void merge(const CellSums& sums);
     void apply_plane(const double* x, double* y) const;
 
-    GridIndex controls_;
     GridIndex places_; // of the half stencil: (p_0 + 1) x (2 p_1 + 1) x (2 p_2 + 1)
     Index same_slice_; // places whose offset along axis 0 is zero; they hold both directions
     std::vector<double> stencil_; // (places x N)
