@@ -72,8 +72,9 @@ TEST(CadFormats, a_crash_of_open_cascade_is_a_line) {
     ASSERT_NE(at, std::string::npos);
     text.insert(at + reference.size(), "9999"); // a pole that is not there
     write_file(path, text);
-    EXPECT_EQ(message(path), path.string() + ": Open CASCADE failed while reading it (signal 11: "
-                                             "Segmentation fault)");
+    EXPECT_TRUE(
+        message(path).starts_with(path.string() + ": Open CASCADE failed while reading it ("))
+        << message(path); // signal 11, where no sanitizer turns it into a status
 }
 
 TEST(CadFormats, options_are_heeded) {
