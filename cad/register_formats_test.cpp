@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <thread>
+#include <unistd.h>
 
 namespace batten {
 namespace {
@@ -17,7 +18,7 @@ Spline rose() {
 }
 
 std::filesystem::path place(const std::string& name) {
-    return std::filesystem::path(testing::TempDir()) / name;
+    return std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + name);
 }
 
 std::string message(const std::filesystem::path& path) {
