@@ -21,7 +21,9 @@ namespace {
 
 /// A shell program that runs `commands`.
 std::filesystem::path program(const std::string& name, const std::string& commands) {
-    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+    const std::filesystem::path path =
+        std::filesystem::path(testing::TempDir()) /
+        fmt::format("{}-{}", name, getpid()); // tests run side by side
     std::ofstream(path) << "#!/bin/sh\n" << commands << '\n';
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
     return path;
