@@ -10,7 +10,8 @@ namespace batten {
 CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index most);
 
 /// The closest acceptable curve that the search above, which has missed the task's tolerances, or
-/// one at looser ones has seen; the trial has no control points when there is none.
+/// one at looser ones has seen; failing any, what was acceptable at the least loose of these, or
+/// what the search left.
 CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options, Index most,
                           const CurveWithin& found);
 

@@ -1,6 +1,8 @@
 #include <batten/core/stopwatch.hpp>
 #include <batten/problem/held.hpp>
 #include <batten/samples/noise.hpp>
+#include <batten/search/curve_corners.hpp>
+#include <batten/search/curve_direction.hpp>
 #include <batten/search/curve_fewest.hpp>
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/residual_noise.hpp>
@@ -140,6 +142,57 @@ CurveOutcome searched(CurveTask& task, const ToleranceOptions& options, Index mo
     return outcome;
 }
 
+/// The task with its samples turned round, which must outlive it.
+CurveTask turned_task(const CurveTask& task, const Turned& turned, const Samples& samples,
+                      const ShapeOptions& shape) {
+    CurveTask result{.samples = samples,
+                     .tolerance = turned(task.tolerance),
+                     .degree = task.degree,
+                     .closure = task.closure,
+                     .hold = turned(task.hold),
+                     .most_inflections = task.most_inflections,
+                     .seam_continuity = task.seam_continuity,
+                     .cancelled = task.cancelled};
+    // not those of the task: rounding would tell the directions apart
+    result.parameters =
+        shape.parameters
+            ? turned.parameters(task.parameters, task.parameters.front(), task.parameters.back())
+            : parametrize_sequence(samples.points, shape.parametrization, task.closure);
+    for (Index corner : task.corners) result.corners.push_back(turned(corner));
+    std::ranges::sort(result.corners);
+    return result;
+}
+
+/// The search with the samples turned round.
+CurveOutcome searched_backwards(const CurveTask& task, const FitOptions& options, Index most) {
+    const Turned turned(task.samples.size(), task.closure);
+    const Samples samples = turned(task.samples);
+    CurveTask backwards = turned_task(task, turned, samples, options.shape);
+    CurveOutcome outcome = searched(backwards, options.tolerance, most);
+    if (!outcome.found.trial.control.empty()) outcome.found.trial = turned(outcome.found.trial);
+    return outcome;
+}
+
+/// Whether the second is the better answer of two searches for the same.
+bool better(const CurveOutcome& second, const CurveOutcome& first) {
+    if (second.found.trial.control.empty()) return false;
+    if (first.found.trial.control.empty() || second.found.met) return true;
+    return second.found.trial.worst < first.found.trial.worst;
+}
+
+/// The search in the direction that the samples themselves determine, and in the other where that
+/// does not meet the tolerance.
+CurveOutcome searched_either_way(CurveTask& task, const FitOptions& options, Index most) {
+    const auto forwards = [&] { return searched(task, options.tolerance, most); };
+    if (task.closure == Closure::closed && options.shape.parameters) return forwards();
+    const bool from_the_end = runs_backwards(task.samples.points, task.closure);
+    CurveOutcome first = from_the_end ? searched_backwards(task, options, most) : forwards();
+    if (first.found.met || first.why == NotMet::noise || task.samples.size() > few_samples)
+        return first;
+    CurveOutcome second = from_the_end ? forwards() : searched_backwards(task, options, most);
+    return better(second, first) ? second : first;
+}
+
 } // namespace
 
 FitResult curve_within(const Samples& given, const FitOptions& options,
@@ -156,12 +209,14 @@ FitResult curve_within(const Samples& given, const FitOptions& options,
     CurveTask task = task_of(turn, options, tolerance);
     const double smallest = tightest(task);
     task.most_inflections = allowed_inflections(task, smallest);
+    if (options.tolerance.corners == Corners::given)
+        task.corners = checked_corners(options.tolerance.corner_samples, task);
     report.seconds.emplace_back("parametrize", watch.lap());
     const Index limit = options.tolerance.max_control_points;
     const Index most = std::max<Index>(
         task.degree + 1,
         limit > 0 ? limit : static_cast<Index>(most_part * static_cast<double>(samples.size())));
-    const CurveOutcome outcome = searched(task, options.tolerance, most);
+    const CurveOutcome outcome = searched_either_way(task, options, most);
     const CurveWithin& found = outcome.found;
     if (found.trial.control.empty() && !found.trial.conflict.empty())
         throw ConstraintConflict(found.trial.conflict);
