@@ -139,14 +139,16 @@ CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index
 }
 
 CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options, Index most,
-                          const CurveWithin& found) {
+                          const CurveWithin& found, double reached) {
     CurveWithin result = found;
     ClosestSeen& closest = result.closest;
     CurveTrial loosest = found.trial; // acceptable at the least loose tolerance so far, if any
     int missed = 0;                   // powers of two by which the tolerance is looser
     int met = 0;
     if (task.samples.size() <= few_samples)
-        std::frexp(std::min(closest.worst(), diagonal(task.samples.points) / tightest(task)), &met);
+        std::frexp(
+            std::min({closest.worst(), reached, diagonal(task.samples.points) / tightest(task)}),
+            &met);
     while (met > missed + 1) {
         const int power = (met + missed) / 2;
         const double factor = std::ldexp(1, power);

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <utility>
 
 namespace batten {
@@ -99,11 +100,9 @@ CurveTask task_of(const OneTurn& turn, const FitOptions& options,
     return task;
 }
 
-NotMet why_not(const CurveTask& task, const ToleranceOptions& options,
-               const CurveOutcome& outcome) {
+NotMet why_not(const CurveTask& task, const ToleranceOptions& options, const CurveWithin& found) {
     if (options.max_control_points > 0) return NotMet::limited;
-    if (outcome.noise > tightest(task) / 3) return NotMet::noise;
-    if (outcome.found.trial.worst <= 1) return NotMet::wild;
+    if (found.trial.worst <= 1) return NotMet::wild;
     if (task.most_inflections >= 0 || task.hold.equalities()) return NotMet::held;
     return NotMet::crowded;
 }
@@ -116,29 +115,27 @@ bool finds_smooth(const CurveTask& task, Index most, CurveOutcome& outcome) {
     if (!smooth.met || !acceptable(task, smooth.trial)) return false;
     smooth.met = false;
     outcome.found = std::move(smooth);
+    outcome.why = NotMet::noise;
     return true;
 }
 
-/// Searches for the tolerance; where it is not met, for the best smooth curve if the samples' noise
-/// rules the tolerance out, else for the closest that may be handed out.
+/// Searches for the tolerance; where it is not met and the samples' noise rules it out, for the
+/// best smooth curve.
 CurveOutcome searched(CurveTask& task, const ToleranceOptions& options, Index most) {
     const Points& q = task.samples.points;
+    const double tolerance = tightest(task);
+    const bool free = options.max_control_points == 0;
     CurveOutcome outcome;
     // of many samples the noise alone can rule a tolerance out: then no search is needed to know
-    const bool many = q.size() > 1000 && noise_bound(q) > tightest(task);
+    const bool many = free && q.size() > 1000 && noise_bound(q) > tolerance;
     if (many) outcome.noise = residual_noise(q);
-    outcome.why = why_not(task, options, outcome);
-    if (outcome.noise > tightest(task) && finds_smooth(task, most, outcome)) return outcome;
-    CurveWithin& found = outcome.found;
-    found = fewest_knots(task, options, most);
-    const bool near = near_interpolation(found.trial.knots.free_count(), q.size());
-    if (!many && (near || !found.met)) outcome.noise = residual_noise(q);
-    if (found.met) return outcome;
-    outcome.why = why_not(task, options, outcome);
-    if (outcome.why == NotMet::noise && finds_smooth(task, most, outcome)) return outcome;
-    CurveWithin closest = closest_curve(task, options, most, found);
-    closest.trial.conflict = found.trial.conflict;
-    found = std::move(closest);
+    if (outcome.noise > tolerance && finds_smooth(task, most, outcome)) return outcome;
+    outcome.found = fewest_knots(task, options, most);
+    const bool met = outcome.found.met;
+    const bool near = near_interpolation(outcome.found.trial.knots.free_count(), q.size());
+    if (!many && (near || !met)) outcome.noise = residual_noise(q);
+    outcome.why = why_not(task, options, outcome.found);
+    if (!met && free && outcome.noise > tolerance / 3) finds_smooth(task, most, outcome);
     return outcome;
 }
 
@@ -163,34 +160,39 @@ CurveTask turned_task(const CurveTask& task, const Turned& turned, const Samples
     return result;
 }
 
-/// The search with the samples turned round.
-CurveOutcome searched_backwards(const CurveTask& task, const FitOptions& options, Index most) {
-    const Turned turned(task.samples.size(), task.closure);
-    const Samples samples = turned(task.samples);
-    CurveTask backwards = turned_task(task, turned, samples, options.shape);
-    CurveOutcome outcome = searched(backwards, options.tolerance, most);
-    if (!outcome.found.trial.control.empty()) outcome.found.trial = turned(outcome.found.trial);
-    return outcome;
-}
-
-/// Whether the second is the better answer of two searches for the same.
-bool better(const CurveOutcome& second, const CurveOutcome& first) {
-    if (second.found.trial.control.empty()) return false;
-    if (first.found.trial.control.empty() || second.found.met) return true;
-    return second.found.trial.worst < first.found.trial.worst;
-}
-
-/// The search in the direction that the samples themselves determine, and in the other where that
-/// does not meet the tolerance.
+/// The search in the direction that the samples themselves determine, then in the other where that
+/// does not meet the tolerance; if neither does, for the closest curve that may be handed out.
 CurveOutcome searched_either_way(CurveTask& task, const FitOptions& options, Index most) {
-    const auto forwards = [&] { return searched(task, options.tolerance, most); };
-    if (task.closure == Closure::closed && options.shape.parameters) return forwards();
-    const bool from_the_end = runs_backwards(task.samples.points, task.closure);
-    CurveOutcome first = from_the_end ? searched_backwards(task, options, most) : forwards();
-    if (first.found.met || first.why == NotMet::noise || task.samples.size() > few_samples)
-        return first;
-    CurveOutcome second = from_the_end ? forwards() : searched_backwards(task, options, most);
-    return better(second, first) ? second : first;
+    const Turned turned(task.samples.size(), task.closure);
+    const Samples reverse = turned(task.samples);
+    CurveTask backwards = turned_task(task, turned, reverse, options.shape);
+    std::vector<CurveTask*> ways{&task, &backwards};
+    if (task.closure == Closure::closed && options.shape.parameters)
+        ways = {&task}; // they need not begin at the seam, from which others are counted back
+    else if (runs_backwards(task.samples.points, task.closure))
+        ways = {&backwards, &task};
+    if (task.samples.size() > few_samples) ways.resize(1);
+    std::vector<CurveOutcome> outcomes;
+    std::size_t best = 0;
+    for (CurveTask* way : ways) {
+        outcomes.push_back(searched(*way, options.tolerance, most));
+        if (!outcomes.back().found.met && outcomes.back().why != NotMet::noise) continue;
+        best = outcomes.size() - 1;
+        ways.resize(outcomes.size());
+        break;
+    }
+    const bool answered = outcomes[best].found.met || outcomes[best].why == NotMet::noise;
+    double reached = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < ways.size() && !answered; ++k) {
+        CurveWithin& found = outcomes[k].found;
+        found = closest_curve(*ways[k], options.tolerance, most, found, reached);
+        if (found.trial.control.empty() || !(found.trial.worst < reached)) continue;
+        reached = found.trial.worst;
+        best = k;
+    }
+    CurveTrial& trial = outcomes[best].found.trial;
+    if (ways[best] == &backwards && !trial.control.empty()) trial = turned(trial);
+    return std::move(outcomes[best]);
 }
 
 } // namespace
