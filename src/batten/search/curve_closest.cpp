@@ -8,6 +8,12 @@
 
 namespace batten {
 
+CurveTrial rescaled(CurveTrial trial, double looser) {
+    trial.worst *= looser;
+    for (double& r : trial.ratio) r *= looser;
+    return trial;
+}
+
 BetweenSamples check_reached(const CurveTask& task, const CurveTrial& trial) {
     std::vector<double> reached = task.tolerance;
     for (double& t : reached) t *= std::max(1.0, trial.worst);
@@ -26,10 +32,8 @@ void ClosestSeen::see(const CurveTask& task, const CurveTrial& trial) {
 
 void ClosestSeen::see(const CurveTask& task, const ClosestSeen& other, double looser) {
     if (!(other.worst() * looser < worst())) return;
-    CurveTrial trial = *other.trial_;
-    trial.worst *= looser;
-    for (double& r : trial.ratio) r *= looser;
-    see(task, trial); // it may have been acceptable for looser tolerances alone
+    see(task,
+        rescaled(*other.trial_, looser)); // it may have been acceptable for looser tolerances alone
 }
 
 double ClosestSeen::worst() const {

@@ -7,6 +7,9 @@
 
 namespace batten {
 
+/// A trial for tolerances that were `looser` times those that it is now judged by.
+CurveTrial rescaled(CurveTrial trial, double looser);
+
 /// What the trial does between samples, judged as if its tolerances were as loose as it is far from
 /// the samples.
 BetweenSamples check_reached(const CurveTask& task, const CurveTrial& trial);

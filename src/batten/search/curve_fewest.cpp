@@ -16,12 +16,8 @@ namespace batten {
 
 namespace {
 
-constexpr Index few_samples = 5000; // for which searching once more takes little time
-
 /// Refines without corners and with them, and thins out what took fewer control points.
 CurveWithin refined_and_thinned(CurveTask& task, const ToleranceOptions& options, Index most) {
-    if (options.corners == Corners::given)
-        task.corners = checked_corners(options.corner_samples, task);
     task.fixed = fixed_samples(task);
     CurveWithin best = refined(task, most);
     if (options.corners == Corners::automatic) {
@@ -143,13 +139,16 @@ CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index
 }
 
 CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options, Index most,
-                          const CurveWithin& found) {
+                          const CurveWithin& found, double reached) {
     CurveWithin result = found;
     ClosestSeen& closest = result.closest;
-    int missed = 0; // powers of two by which the tolerance is looser
+    CurveTrial loosest = found.trial; // acceptable at the least loose tolerance so far, if any
+    int missed = 0;                   // powers of two by which the tolerance is looser
     int met = 0;
     if (task.samples.size() <= few_samples)
-        std::frexp(std::min(closest.worst(), diagonal(task.samples.points) / tightest(task)), &met);
+        std::frexp(
+            std::min({closest.worst(), reached, diagonal(task.samples.points) / tightest(task)}),
+            &met);
     while (met > missed + 1) {
         const int power = (met + missed) / 2;
         const double factor = std::ldexp(1, power);
@@ -157,9 +156,10 @@ CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options
         for (double& t : looser.tolerance) t *= factor;
         const CurveWithin again = fewest_knots(looser, options, most);
         closest.see(task, again.closest, factor);
+        if (again.met) loosest = rescaled(again.trial, factor);
         (again.met ? met : missed) = power;
     }
-    result.trial = closest.trial().value_or(CurveTrial{});
+    result.trial = closest.trial().value_or(loosest);
     result.met = closest.worst() <= 1;
     result.stages.emplace_back("closest", result.trial.knots.free_count());
     if (result.met) thin_out(task, result);

@@ -2,6 +2,8 @@
 #include <batten/problem/held.hpp>
 #include <batten/problem/subset.hpp>
 #include <batten/samples/noise.hpp>
+#include <batten/search/curve_corners.hpp>
+#include <batten/search/curve_direction.hpp>
 #include <batten/search/curve_fewest.hpp>
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/residual_noise.hpp>
@@ -10,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <utility>
 
 namespace batten {
@@ -85,11 +88,9 @@ CurveTask task_of(const Problem& problem) {
     return task;
 }
 
-NotMet why_not(const CurveTask& task, const ToleranceOptions& options,
-               const CurveOutcome& outcome) {
+NotMet why_not(const CurveTask& task, const ToleranceOptions& options, const CurveWithin& found) {
     if (options.max_control_points > 0) return NotMet::limited;
-    if (outcome.noise > tightest(task) / 3) return NotMet::noise;
-    if (outcome.found.trial.worst <= 1) return NotMet::wild;
+    if (found.trial.worst <= 1) return NotMet::wild;
     if (task.most_inflections >= 0 || task.hold.equalities()) return NotMet::held;
     return NotMet::crowded;
 }
@@ -102,30 +103,85 @@ bool finds_smooth(const CurveTask& task, Index most, CurveOutcome& outcome) {
     if (!smooth.met || !acceptable(task, smooth.trial)) return false;
     smooth.met = false;
     outcome.found = std::move(smooth);
+    outcome.why = NotMet::noise;
     return true;
 }
 
-/// Searches for the tolerance; where it is not met, for the best smooth curve if the samples' noise
-/// rules the tolerance out, else for the closest that may be handed out.
+/// Searches for the tolerance; where it is not met and the samples' noise rules it out, for the
+/// best smooth curve.
 CurveOutcome searched(CurveTask& task, const ToleranceOptions& options, Index most) {
     const Points& q = task.samples.points;
+    const double tolerance = tightest(task);
+    const bool free = options.max_control_points == 0;
     CurveOutcome outcome;
     // of many samples the noise alone can rule a tolerance out: then no search is needed to know
-    const bool many = q.size() > 1000 && noise_bound(q) > tightest(task);
+    const bool many = free && q.size() > 1000 && noise_bound(q) > tolerance;
     if (many) outcome.noise = residual_noise(q);
-    outcome.why = why_not(task, options, outcome);
-    if (outcome.noise > tightest(task) && finds_smooth(task, most, outcome)) return outcome;
-    CurveWithin& found = outcome.found;
-    found = fewest_knots(task, options, most);
-    const bool near = near_interpolation(found.trial.knots.free_count(), q.size());
-    if (!many && (near || !found.met)) outcome.noise = residual_noise(q);
-    if (found.met) return outcome;
-    outcome.why = why_not(task, options, outcome);
-    if (outcome.why == NotMet::noise && finds_smooth(task, most, outcome)) return outcome;
-    CurveWithin closest = closest_curve(task, options, most, found);
-    closest.trial.conflict = found.trial.conflict;
-    found = std::move(closest);
+    if (outcome.noise > tolerance && finds_smooth(task, most, outcome)) return outcome;
+    outcome.found = fewest_knots(task, options, most);
+    const bool met = outcome.found.met;
+    const bool near = near_interpolation(outcome.found.trial.knots.free_count(), q.size());
+    if (!many && (near || !met)) outcome.noise = residual_noise(q);
+    outcome.why = why_not(task, options, outcome.found);
+    if (!met && free && outcome.noise > tolerance / 3) finds_smooth(task, most, outcome);
     return outcome;
+}
+
+/// The task with its samples turned round, which must outlive it.
+CurveTask turned_task(const CurveTask& task, const Turned& turned, const Samples& samples,
+                      const ShapeOptions& shape) {
+    CurveTask result{.samples = samples,
+                     .tolerance = turned(task.tolerance),
+                     .degree = task.degree,
+                     .closure = task.closure,
+                     .hold = turned(task.hold),
+                     .most_inflections = task.most_inflections,
+                     .seam_continuity = task.seam_continuity,
+                     .unit = task.unit,
+                     .cancelled = task.cancelled};
+    // not those of the task: rounding would tell the directions apart
+    result.parameters =
+        shape.parameters
+            ? turned.parameters(task.parameters, task.parameters.front(), task.parameters.back())
+            : parametrize_sequence(samples.points, shape.parametrization, task.closure);
+    for (Index corner : task.corners) result.corners.push_back(turned(corner));
+    std::ranges::sort(result.corners);
+    return result;
+}
+
+/// The search in the direction that the samples themselves determine, then in the other where that
+/// does not meet the tolerance; if neither does, for the closest curve that may be handed out.
+CurveOutcome searched_either_way(CurveTask& task, const FitOptions& options, Index most) {
+    const Turned turned(task.samples.size(), task.closure);
+    const Samples reverse = turned(task.samples);
+    CurveTask backwards = turned_task(task, turned, reverse, options.shape);
+    std::vector<CurveTask*> ways{&task, &backwards};
+    if (task.closure == Closure::closed && options.shape.parameters)
+        ways = {&task}; // they need not begin at the seam, from which others are counted back
+    else if (runs_backwards(task.samples.points, task.closure))
+        ways = {&backwards, &task};
+    if (task.samples.size() > few_samples) ways.resize(1);
+    std::vector<CurveOutcome> outcomes;
+    std::size_t best = 0;
+    for (CurveTask* way : ways) {
+        outcomes.push_back(searched(*way, options.tolerance, most));
+        if (!outcomes.back().found.met && outcomes.back().why != NotMet::noise) continue;
+        best = outcomes.size() - 1;
+        ways.resize(outcomes.size());
+        break;
+    }
+    const bool answered = outcomes[best].found.met || outcomes[best].why == NotMet::noise;
+    double reached = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < ways.size() && !answered; ++k) {
+        CurveWithin& found = outcomes[k].found;
+        found = closest_curve(*ways[k], options.tolerance, most, found, reached);
+        if (found.trial.control.empty() || !(found.trial.worst < reached)) continue;
+        reached = found.trial.worst;
+        best = k;
+    }
+    CurveTrial& trial = outcomes[best].found.trial;
+    if (ways[best] == &backwards && !trial.control.empty()) trial = turned(trial);
+    return std::move(outcomes[best]);
 }
 
 } // namespace
@@ -139,11 +195,13 @@ Fitted curve_within(const Problem& given) {
     CurveTask task = task_of(problem);
     const double smallest = tightest(task);
     task.most_inflections = allowed_inflections(task, smallest);
+    if (options.tolerance.corners == Corners::given)
+        task.corners = checked_corners(options.tolerance.corner_samples, task);
     const Index limit = options.tolerance.max_control_points;
     const Index most = std::max<Index>(
         task.degree + 1,
         limit > 0 ? limit : static_cast<Index>(most_part * static_cast<double>(samples.size())));
-    const CurveOutcome outcome = searched(task, options.tolerance, most);
+    const CurveOutcome outcome = searched_either_way(task, options, most);
     const CurveWithin& found = outcome.found;
     if (found.trial.control.empty() && !found.trial.conflict.empty())
         throw ConstraintConflict(found.trial.conflict);

@@ -1,8 +1,10 @@
+#include <batten/core/grid_index.hpp>
 #include <batten/core/stopwatch.hpp>
-#include <batten/measure/between_samples.hpp>
+#include <batten/measure/deviation.hpp>
 #include <batten/problem/held.hpp>
-#include <batten/search/grid_sizes.hpp>
+#include <batten/search/grid_trials.hpp>
 #include <batten/search/search.hpp>
+#include <batten/search/verdict_words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,64 +30,85 @@ std::vector<Index> most_per_axis(const Samples& samples, const Parameters& param
     return most;
 }
 
+/// The fewest control points, with the certificate of a grid.
+GridWithin certified(const GridTask& task) {
+    GridWithin found = fewest_sizes(task);
+    if (found.spline.axis_count() > 0 && !task.parameters.is_scattered())
+        found.between = check_reached(task, found.spline, found.worst);
+    return found;
+}
+
+/// The search; once more with what lies between the samples counted where the spline is wild there.
+GridWithin searched(const GridTask& task) {
+    GridWithin found = certified(task);
+    if (found.between.excess <= wild_part) return found;
+    GridTask calmer = task;
+    calmer.between = GridTask::Between::counted;
+    GridWithin calm = certified(calmer);
+    return calm.spline.axis_count() > 0 ? calm : found;
+}
+
+NotMet why_not(const GridTask& task, const GridWithin& found, Index allowed) {
+    const Index n = GridIndex(free_shape(found.spline.axes())).size();
+    if (found.worst <= 1) return NotMet::wild;
+    if (task.hold.equalities() && n < GridIndex(task.most).size() / 2) return NotMet::held;
+    return allowed > 0 ? NotMet::limited : NotMet::crowded;
+}
+
+/// The account of a search: the certificate, the verdict and the ending; `allowed`: control points,
+/// where a limit was stated.
+FitReport judged(const GridTask& task, const GridWithin& found, Index allowed, double unit) {
+    FitReport report;
+    const Index n = GridIndex(free_shape(found.spline.axes())).size();
+    const BetweenSamples& between = found.between;
+    const bool met = found.met && between.excess <= wild_part;
+    const std::vector<double> off =
+        parametric_deviations(found.spline, task.samples, task.parameters);
+    report.stages = found.stages;
+    report.tolerance = *std::ranges::min_element(task.tolerance);
+    report.termination = met ? Termination::tolerance_met : Termination::tolerance_not_met;
+    report.between_samples = between.excess;
+    report.verdict = met ? "met"
+                         : not_met_words({.why = why_not(task, found, allowed),
+                                          .allowed = allowed,
+                                          .control_points = n,
+                                          .deviation = *std::ranges::max_element(off),
+                                          .unit = unit});
+    report.verdict += near_interpolation_words(n, task.samples.size(), 0, unit);
+    if (!between.good)
+        report.verdict += fmt::format(
+            "; beside sample {} the spline strays {:.2g} times as far as allowed between samples",
+            between.worst_sample, between.excess);
+    return report;
+}
+
 } // namespace
 
 Fitted surface_within(const Problem& problem) {
     const Samples& samples = problem.samples;
     const FitOptions& options = problem.options;
     const AxisPlan& plan = problem.axes;
-    Fitted result;
-    FitReport& report = result.report;
     Stopwatch watch;
-    result.parameters = problem.parameters;
     const std::vector<double>& tolerance = problem.tolerance;
     const Index limit = options.tolerance.max_control_points;
     const double part =
         limit > 0 ? std::min(1.0, static_cast<double>(limit) / static_cast<double>(samples.size()))
                   : most_part;
-    const std::vector<Index> most = most_per_axis(samples, result.parameters, plan, part);
-    const GridTask task{samples, result.parameters, tolerance,        plan.degree, plan.closures,
-                        most,    options.hold,      options.cancelled};
-    GridWithin found = few_knots(task);
+    const std::vector<Index> most = most_per_axis(samples, problem.parameters, plan, part);
+    const GridTask task{.samples = samples,
+                        .parameters = problem.parameters,
+                        .tolerance = tolerance,
+                        .degree = plan.degree,
+                        .closures = plan.closures,
+                        .most = most,
+                        .hold = options.hold,
+                        .cancelled = options.cancelled};
+    GridWithin found = searched(task);
     if (found.spline.axis_count() == 0)
         throw SolverError(
             "no number of control points gives a solvable system: the grid's parameters coincide");
-    report.stages = found.stages;
-    report.seconds.emplace_back("search", watch.lap());
-    const double share =
-        static_cast<double>(found.stages.back().second) / static_cast<double>(samples.size());
-    Index worst_cell = 0;
-    report.tolerance = *std::min_element(tolerance.begin(), tolerance.end());
-    report.termination = found.met ? Termination::tolerance_met : Termination::tolerance_not_met;
-    result.spline = std::move(found.spline);
-    bool wild = false;
-    if (!result.parameters.is_scattered() && found.met) {
-        const BetweenSamples between =
-            check_between_grid(result.spline, samples, result.parameters, tolerance);
-        report.between_samples = between.excess;
-        worst_cell = between.worst_sample;
-        wild = between.excess > wild_part;
-        if (wild) report.termination = Termination::tolerance_not_met;
-    }
-    report.verdict =
-        wild        ? "not met: every sample is within, but the spline is wild between some"
-        : found.met ? "met"
-        : options.hold.equalities() && share < 0.5 * part
-            ? "not met: what must hold keeps the spline from some samples; without it they might "
-              "be reached"
-        : limit > 0
-            ? fmt::format("not met: {} control points are allowed and do not suffice", limit)
-            : fmt::format(
-                  "not met: more than {:.0f} % of the samples would be needed as control points",
-                  100 * most_part);
-    if (share > smooth_part)
-        report.verdict +=
-            fmt::format("{} it nearly interpolates: {:.0f} control points per 100 samples",
-                        found.met ? ", but" : ";", 100 * share);
-    if (report.between_samples > 1)
-        report.verdict += fmt::format(
-            "; beside sample {} the spline strays {:.2g} times as far as allowed between samples",
-            worst_cell, report.between_samples);
+    Fitted result{found.spline, problem.parameters, judged(task, found, limit, options.unit)};
+    result.report.seconds.emplace_back("search", watch.lap());
     return result;
 }
 

@@ -155,7 +155,13 @@ std::vector<Index> least_size(const GridTask& task) {
 
 } // namespace
 
-GridWithin few_knots(const GridTask& task) {
+BetweenSamples check_reached(const GridTask& task, const Spline& spline, double worst) {
+    std::vector<double> reached = task.tolerance;
+    for (double& t : reached) t *= std::max(1.0, worst);
+    return check_between_grid(spline, task.samples, task.parameters, reached);
+}
+
+GridWithin fewest_sizes(const GridTask& task) {
     const auto t = ascending(task.parameters);
     const auto& degree = task.degree;
     const std::vector<Index> least = least_size(task);

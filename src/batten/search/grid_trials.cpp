@@ -4,10 +4,12 @@
 #include <batten/iterate/iterate.hpp>
 #include <batten/measure/deviation.hpp>
 #include <batten/problem/held.hpp>
+#include <batten/search/search.hpp>
 #include <batten/solve/direct.hpp>
 #include <batten/system/collocation.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace batten {
 
@@ -42,8 +44,9 @@ double GridSearch::attempt(const std::vector<Index>& n) {
         Trial trial = fitted(axes, task_.samples);
         if (effort == Effort::equalised && trial.worst > 1 && trial.worst < reachable)
             equalise(axes, trial);
-        keep(GridIndex(n).size(), trial);
-        return trial.worst;
+        const double wildness = between(trial);
+        if (wildness <= 1) keep(GridIndex(n).size(), trial);
+        return std::max(trial.worst, wildness);
     } catch (const SolverError&) {
         return std::numeric_limits<double>::infinity();
     } catch (const ConstraintConflict& error) { // with more control points it may hold
@@ -89,6 +92,11 @@ void GridSearch::equalise(const std::vector<KnotVector>& axes, Trial& best_trial
         const std::size_t before = course.size() > 4 ? course.size() - 4 : 0;
         if (round >= 3 && course.back() - 1 > 0.75 * (course[before] - 1)) break;
     }
+}
+
+double GridSearch::between(const Trial& trial) const {
+    if (task_.between == GridTask::Between::left_aside || !std::isfinite(trial.worst)) return 0;
+    return check_reached(task_, trial.spline, trial.worst).excess / wild_part;
 }
 
 void GridSearch::keep(Index count, Trial& trial) {

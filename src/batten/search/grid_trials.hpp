@@ -40,6 +40,8 @@ class GridSearch {
     /// Moves the goals of the samples that are furthest out beyond them, again and again, as a
     /// greater weight would: the system keeps its factors.
     void equalise(const std::vector<KnotVector>& axes, Trial& best_trial) const;
+    /// Part of what would be wild between samples, where that counts; else 0.
+    double between(const Trial& trial) const;
     void keep(Index count, Trial& trial);
     PointSet solve(const NormalSystem& system) const;
 

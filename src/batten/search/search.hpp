@@ -21,6 +21,7 @@ Fitted surface_within(const Problem& problem);
 
 inline constexpr double most_part = 0.9;   ///< of the samples may become control points
 inline constexpr double smooth_part = 0.5; ///< beyond it a fit is near-interpolation
+inline constexpr Index few_samples = 5000; ///< searching once more takes little time
 /// Whether there are so many control points that a spline follows each sample.
 inline bool near_interpolation(Index control_points, Index samples) {
     return static_cast<double>(control_points) > smooth_part * static_cast<double>(samples);

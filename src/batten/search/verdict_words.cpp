@@ -25,8 +25,7 @@ std::string reason(const Shortfall& s) {
         break;
     }
     return fmt::format(
-        "no curve or surface was found that needs at most {:.0f} % of the samples as "
-        "control points",
+        "no such fit was found with at most {:.0f} % of the samples as control points",
         100 * most_part);
 }
 
