@@ -1,5 +1,6 @@
 #include <batten/problem/plan.hpp>
 
+#include <batten/core/counts.hpp>
 #include <batten/spline/spline.hpp>
 
 #include <algorithm>
@@ -40,6 +41,18 @@ KnotVector given_knots(const std::vector<double>& knots, int degree, Closure clo
     return result;
 }
 
+/// Throws InvalidInput when memory cannot hold the control points, or of a cloud the normal system:
+/// half of the numbers for the control points within degree on each side, for each.
+void check_net(const Samples& samples, const AxisPlan& plan) {
+    constexpr std::string_view what = "control points";
+    Index system = 1;
+    if (samples.grid.empty())
+        for (int degree : plan.degree) system *= system == 1 ? degree + 1 : 2 * degree + 1;
+    std::vector<Index> numbers = plan.control_points;
+    numbers.push_back(std::max(samples.dim(), system));
+    check_memory(checked_product(numbers, what), what);
+}
+
 } // namespace
 
 std::vector<int> degrees_per_axis(const ShapeOptions& options, Index axes) {
@@ -74,6 +87,7 @@ AxisPlan plan_axes(const Samples& samples, const ShapeOptions& options) {
                 fmt::format("axis {}: {} control points need at least as many samples, got {}", k,
                             plan.control_points[k], samples.shape()[k]));
     }
+    check_net(samples, plan);
     return plan;
 }
 

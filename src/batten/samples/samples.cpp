@@ -1,5 +1,7 @@
 #include <batten/samples/samples.hpp>
 
+#include <batten/core/counts.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -24,8 +26,7 @@ void check_shape(const Samples& samples) {
     if (samples.grid.size() < 2 || samples.grid.size() > 3)
         throw InvalidInput(
             fmt::format("grid: {} axes given, 2 or 3 are possible", samples.grid.size()));
-    Index product = 1;
-    for (Index m : samples.grid) product *= m;
+    const Index product = checked_product(samples.grid, "grid");
     if (product != samples.size())
         throw InvalidInput(fmt::format("grid: {} needs {} samples, got {}",
                                        fmt::join(samples.grid, "x"), product, samples.size()));
@@ -74,7 +75,7 @@ void check(const Samples& samples) {
 
 Samples height_samples(const Points& heights, std::array<Index, 2> shape,
                        std::array<double, 2> spacing) {
-    if (heights.dim() != 1 || heights.size() != shape[0] * shape[1])
+    if (heights.dim() != 1 || heights.size() != checked_product(shape, "heights"))
         throw InvalidInput(
             fmt::format("heights: {}x{} needs {} single numbers, got {} of dimension {}", shape[0],
                         shape[1], shape[0] * shape[1], heights.size(), heights.dim()));

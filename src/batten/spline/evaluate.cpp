@@ -1,6 +1,7 @@
 #include <batten/spline/spline.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace batten {
@@ -16,6 +17,8 @@ struct Local {
 };
 
 Local local_basis(const KnotVector& knots, double t, int order) {
+    if (!std::isfinite(t))
+        throw InvalidInput(fmt::format("evaluate: parameter {} is not a finite number", t));
     t = knots.wrapped(t);
     const Index span = knots.span(t);
     return {span - knots.degree(),

@@ -1,17 +1,13 @@
 #include <batten/spline/spline.hpp>
 
+#include <batten/core/counts.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace batten {
 
 namespace {
-
-Index product(const std::vector<Index>& shape) {
-    Index result = 1;
-    for (Index n : shape) result *= n;
-    return result;
-}
 
 std::vector<Index> stored_shape(std::span<const KnotVector> axes) {
     std::vector<Index> shape;
@@ -22,7 +18,7 @@ std::vector<Index> stored_shape(std::span<const KnotVector> axes) {
 /// Copies the block of `to` shape out of `from`, wrapping each index into the source.
 PointSet copy_wrapped(const PointSet& source, const std::vector<Index>& from,
                       const std::vector<Index>& to) {
-    PointSet result(product(to), source.dim());
+    PointSet result(checked_product(to, "spline"), source.dim());
     std::vector<Index> at(to.size(), 0);
     for (Index row = 0; row < result.size(); ++row) {
         Index k = 0;
@@ -48,14 +44,14 @@ Spline::Spline(std::vector<KnotVector> axes, PointSet control)
     : axes_(std::move(axes)), control_(std::move(control)) {
     if (axes_.empty() || axes_.size() > 3)
         throw InvalidInput(fmt::format("spline: {} axes given, 1 to 3 are possible", axes_.size()));
-    if (product(control_shape()) != control_.size())
+    if (checked_product(control_shape(), "spline") != control_.size())
         throw InvalidInput(fmt::format("spline: {} control points given, the knots need {}",
                                        control_.size(), fmt::join(control_shape(), "x")));
 }
 
 Spline Spline::from_free(std::vector<KnotVector> axes, const PointSet& free_control) {
     const std::vector<Index> from = free_shape(axes);
-    if (product(from) != free_control.size())
+    if (checked_product(from, "spline") != free_control.size())
         throw InvalidInput(fmt::format("spline: {} free control points given, the knots need {}",
                                        free_control.size(), fmt::join(from, "x")));
     PointSet control = copy_wrapped(free_control, from, stored_shape(axes));
