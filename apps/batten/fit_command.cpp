@@ -9,6 +9,7 @@
 #include <batten/iterate/methods.hpp>
 #include <batten/report/html.hpp>
 
+#include <cstdio>
 #include <fmt/format.h>
 #include <fstream>
 #include <memory>
@@ -82,7 +83,7 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     if (!flags.summary.empty()) outputs.add(flags.summary, result.report.to_json());
     outputs.put_in_place();
     if (!flags.quiet)
-        fmt::print(writes_standard_output(flags) ? stderr : stdout, "{}", result.report.full());
+        std::fputs(result.report.full().c_str(), writes_standard_output(flags) ? stderr : stdout);
     if (result.report.termination == Termination::tolerance_not_met) throw ToleranceNotMet{};
 }
 

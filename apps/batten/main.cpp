@@ -77,7 +77,8 @@ std::string one_line(std::string_view words) {
 }
 
 int complain(std::string_view what, ExitStatus status) {
-    fmt::print(stderr, "batten: {}\n", one_line(what));
+    // where there is no standard error the status must do
+    std::fputs(fmt::format("batten: {}\n", one_line(what)).c_str(), stderr);
     return status;
 }
 

@@ -1,8 +1,14 @@
 #include <batten/io/spline_file.hpp>
 
+#include <batten/core/names.hpp>
+
+#include <algorithm>
+#include <cstdint>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace batten {
 
@@ -19,14 +25,40 @@ std::string over_axes(const Spline& spline, Entry entry) {
     return text + "]";
 }
 
-Spline build(const Json& json) {
-    if (!json.is_object() || json.value("format", "") != "batten-spline")
+/// A list of whole numbers; the library's own conversion would cut off fractions and wrap what is
+/// too large.
+template <class Number>
+std::vector<Number> whole_numbers(const Json& json, const char* key) {
+    std::vector<Number> result;
+    for (const Json& entry : json.at(key)) {
+        const bool whole = entry.is_number_integer() &&
+                           (!entry.is_number_unsigned() ||
+                            entry.get<std::uint64_t>() <= std::numeric_limits<Index>::max());
+        if (!whole || !std::in_range<Number>(entry.get<Index>()))
+            throw InvalidInput(
+                fmt::format("{}: {} is not a whole number in range", key, entry.dump()));
+        result.push_back(entry.get<Number>());
+    }
+    return result;
+}
+
+void check_head(const Json& json) {
+    if (!json.is_object() || !json.contains("format") || json["format"] != "batten-spline")
         throw InvalidInput("\"format\" is not \"batten-spline\"");
-    if (json.at("version").get<int>() != 1)
+    if (json.at("version") != 1)
         throw InvalidInput(fmt::format("version {} is not 1", json.at("version").dump()));
-    const auto degree = json.at("degree").get<std::vector<int>>();
+    constexpr std::string_view known[] = {"format", "version",       "degree",        "closed",
+                                          "knots",  "control_shape", "control_points"};
+    for (const auto& [key, value] : json.items())
+        if (std::ranges::count(known, std::string_view(key)) == 0)
+            throw InvalidInput(unknown_name("key", key, known));
+}
+
+Spline build(const Json& json) {
+    check_head(json);
+    const auto degree = whole_numbers<int>(json, "degree");
     const auto knots = json.at("knots").get<std::vector<std::vector<double>>>();
-    const auto shape = json.at("control_shape").get<std::vector<Index>>();
+    const auto shape = whole_numbers<Index>(json, "control_shape");
     const auto closed = json.value("closed", std::vector<bool>(degree.size(), false));
     if (knots.size() != degree.size() || shape.size() != degree.size() ||
         closed.size() != degree.size())

@@ -144,15 +144,15 @@ OutputPlace output_place(const fs::path& name) {
 
 bool is_stream(const fs::path& name) {
     if (name == "-") return true;
-    std::error_code error;
-    const fs::file_status status = fs::status(name, error);
-    if (error || !fs::exists(status)) return false;
-    if (!fs::is_regular_file(status) && !fs::is_directory(status)) return true;
     try {
-        return followed(name).descriptor.has_value();
+        if (followed(name).descriptor) return true;
     } catch (const FileError&) {
         return false;
     }
+    std::error_code error;
+    const fs::file_status status = fs::status(name, error);
+    return !error && fs::exists(status) && !fs::is_regular_file(status) &&
+           !fs::is_directory(status);
 }
 
 void check_outputs(std::span<const FileUse> outputs, std::span<const FileUse> inputs) {

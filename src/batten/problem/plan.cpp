@@ -4,6 +4,7 @@
 #include <batten/spline/spline.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -48,8 +49,8 @@ void check_net(const Samples& samples, const AxisPlan& plan) {
     Index system = 1;
     if (samples.grid.empty())
         for (int degree : plan.degree) system *= system == 1 ? degree + 1 : 2 * degree + 1;
-    std::vector<Index> numbers = plan.control_points;
-    numbers.push_back(std::max(samples.dim(), system));
+    const std::array numbers{checked_product(plan.control_points, what),
+                             std::max(samples.dim(), system)};
     check_memory(checked_product(numbers, what), what);
 }
 
