@@ -3,10 +3,8 @@ import json
 import os
 import pathlib
 import re
-import signal
 import subprocess
 import tempfile
-import time
 import unittest
 
 import numpy as np
@@ -261,18 +259,6 @@ class Manners(Command):
 
     def test_no_argument_says_what_to_do_next(self):
         self.assertIn("batten fit wing.csv", self.good())
-
-    def test_interrupt_leaves_nothing(self):
-        self.good("generate", "rose", "--samples", 200000, "-o", "big.csv")
-        before = sorted(self.folder.iterdir())
-        for work in (["-n", "90000", "--method", "lspia", "--stop-gradient", "1e-300", "--max-iterations", "100000000"], ["--tolerance", "1e-10"]):
-            fit = subprocess.Popen([BATTEN, "fit", "big.csv", *work, "-o", "x.json"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
-            time.sleep(1.5)
-            fit.send_signal(signal.SIGINT)
-            _, words = fit.communicate(timeout=60)
-            self.assertEqual(fit.returncode, 130, work)
-            self.assertEqual(words, "batten: interrupted; nothing was written\n")
-            self.assertEqual(sorted(self.folder.iterdir()), before)
 
 
 class Readme(Command):

@@ -451,7 +451,7 @@ class Readers(Files):
                 self.bad(3, f"t.txt: row 1: {word} is not a finite number", "fit", "p.csv", *([] if flag in ("--tolerances", "--knots") else ["-n", 8]),
                          flag, table)
         spline = json.loads(self.read("s.json"))
-        huge = dict(spline, control_points=[[1e308, -1e308], [-1e308, 1e308]] * 4)
+        huge = dict(spline, control_points=[[1e307, -1e307], [-1e307, 1e307]] * 4)
         self.write("huge.json", json.dumps(huge))
         done = self.run_batten("evaluate", "huge.json", "--samples", 9, "--derivative", 1, "-o", "x.csv")
         self.assertEqual(done.returncode, 2)
@@ -464,12 +464,27 @@ class Readers(Files):
                               (r"control_shape: 18446744073709551615 is not a whole number in range", dict(control_shape=[2**64 - 1])),
                               (r"version \"1\" is not 1", dict(version="1")), (r"version 2 is not 1", dict(version=2)),
                               (r"unknown key 'closd'; did you mean 'closed'\?", dict(closd=[True])),
+                              (r"axis 0: between knots 0 and \S+ nothing can be computed",
+                               dict(knots=[[x * 1e-320 for x in spline["knots"][0]]])),
+                              (r"control_points: they are so far apart that nothing can be computed",
+                               dict(control_points=[[1e308, -1e308], [-1e308, 1e308]] * 4)),
                               (r"parse error .*", dict(control_points=[[float("nan"), 1]] * 8))):
             self.write("bad.json", json.dumps(dict(spline, **change)))
             for line in ("info bad.json", "evaluate bad.json --samples 4", "fit p.csv --knots bad.json"):
                 done = self.run_batten(*line.split())
                 self.assertRegex(done.stderr.decode(), r"^batten: bad\.json: " + words + r"\n$")
                 self.assertEqual(done.returncode, 3)
+
+    def test_sizes_far_from_one(self):
+        """Extents and combs come out in range; the squares and cubes on the way do not."""
+        P = np.loadtxt(self.folder / "p.csv", delimiter=",")
+        spline = json.loads(self.read("s.json"))
+        for scale in (1e150, 1e250, 1e-150, 1e-250):
+            np.savetxt(self.folder / "q.csv", P * scale, delimiter=",")
+            self.write("q.json", json.dumps(dict(spline, control_points=(np.array(spline["control_points"]) * scale).tolist())))
+            diagonal = float(self.good("info", "q.csv").split(b"diagonal ")[1].split()[0])
+            self.assertAlmostEqual(diagonal / scale / np.linalg.norm(np.ptp(P, axis=0)), 1, 5)
+            self.assertNotRegex(self.good("plot", "q.json", "--comb").decode(), r"\b(nan|inf)\b")
 
     def test_streams_need_no_extension(self):
         content = self.read("p.csv")

@@ -13,6 +13,8 @@ namespace {
 
 using namespace batten;
 
+__extension__ using Wide = __int128; // holds every product of two counts
+
 std::string refusal(const std::vector<Index>& counts) {
     try {
         checked_product(counts, "grid");
@@ -46,7 +48,7 @@ TEST(CheckedProduct, NamesWhatIsBeyondCounting) {
         const auto a = static_cast<Index>(seed >> (1 + seed % 60));
         seed = seed * 6364136223846793005U + 1442695040888963407U;
         const auto b = static_cast<Index>(seed >> (1 + seed % 60));
-        EXPECT_EQ(refusal({a, b}).empty(), static_cast<__int128>(a) * b <= most) << a << " " << b;
+        EXPECT_EQ(refusal({a, b}).empty(), static_cast<Wide>(a) * b <= most) << a << " " << b;
     }
 }
 

@@ -3,6 +3,7 @@
 #include <batten/core/names.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -54,6 +55,21 @@ void check_head(const Json& json) {
             throw InvalidInput(unknown_name("key", key, known));
 }
 
+/// Numbers that are finite, but whose differences or quotients are not, make no spline.
+void check_extents(const std::vector<KnotVector>& axes, const PointSet& control) {
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+        const std::vector<double> breaks = axes[k].breakpoints();
+        for (std::size_t b = 0; b + 1 < breaks.size(); ++b)
+            if (const double span = breaks[b + 1] - breaks[b];
+                !std::isnormal(span) || !std::isfinite(1 / span))
+                throw InvalidInput(fmt::format("axis {}: between knots {} and {} nothing can be "
+                                               "computed",
+                                               k, breaks[b], breaks[b + 1]));
+    }
+    if (!std::isfinite(diagonal(control)))
+        throw InvalidInput("control_points: they are so far apart that nothing can be computed");
+}
+
 Spline build(const Json& json) {
     check_head(json);
     const auto degree = whole_numbers<int>(json, "degree");
@@ -82,6 +98,7 @@ Spline build(const Json& json) {
                                            i, point.size(), control.dim()));
         std::copy(point.begin(), point.end(), control[static_cast<Index>(i)].begin());
     }
+    check_extents(axes, control);
     return {std::move(axes), std::move(control)};
 }
 

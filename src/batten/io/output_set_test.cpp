@@ -153,7 +153,7 @@ TEST_F(Outputs, hold_what_can_be_read_back) {
     const Spline good({KnotVector(1, {0, 0, 1, 1})}, PointSet(2, 1));
     EXPECT_EQ(message_of<InvalidInput>(
                   [&] { write_spline(path("s.json"), {.spline = good, .unit = "km"}); }),
-              "unknown unit 'km'; did you mean 'm'?");
+              "unknown unit 'km'; did you mean 'mm'?");
     EXPECT_EQ(message_of<InvalidInput>(
                   [&] { write_spline(path("s.json"), {.spline = good, .chord_tolerance = -1}); }),
               "chord tolerance -1: must be positive and finite, or 0 for a thousandth of the size");

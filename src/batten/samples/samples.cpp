@@ -131,7 +131,18 @@ PointSet bounding_box(const Points& points) {
 
 double diagonal(const Points& points) {
     const PointSet box = bounding_box(points);
-    return distance(box[0], box[1]);
+    const double plain = distance(box[0], box[1]);
+    if (plain > 0 && std::isfinite(plain)) return plain;
+    // the squares may have left the range of numbers although the length has not
+    double largest = 0;
+    for (Index d = 0; d < box.dim(); ++d) largest = std::max(largest, box(1, d) - box(0, d));
+    if (!(largest > 0) || !std::isfinite(largest)) return largest;
+    double squares = 0;
+    for (Index d = 0; d < box.dim(); ++d) {
+        const double part = (box(1, d) - box(0, d)) / largest;
+        squares += part * part;
+    }
+    return largest * std::sqrt(squares);
 }
 
 } // namespace batten
