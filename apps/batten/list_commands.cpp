@@ -2,9 +2,11 @@
 #include "parse.hpp"
 
 #include <batten/drivers/table.hpp>
+#include <batten/io/output_place.hpp>
 #include <batten/io/points_file.hpp>
 #include <batten/samples/generate.hpp>
 
+#include <array>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
@@ -28,9 +30,12 @@ void add_generate(CLI::App& app) {
         ->capture_default_str();
     sub->footer(list + "Example:\n  batten generate peaks -o peaks.npy");
     sub->callback([flags] {
-        const Samples samples =
-            generate(flags->name, flags->size.empty() ? std::vector<Index>{}
-                                                      : parse_shape("--samples", flags->size));
+        check_outputs(std::array{FileUse{flags->output, "--output"}}, {});
+        std::vector<Index> size;
+        if (!flags->size.empty()) size = parse_shape("--samples", flags->size);
+        constexpr Index dim = 3; // of none more
+        check_room(flags->output, size, dim);
+        const Samples samples = generate(flags->name, size);
         write_points(flags->output, samples.points, samples.grid);
     });
 }

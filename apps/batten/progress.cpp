@@ -1,15 +1,31 @@
 #include "progress.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <fmt/format.h>
+#include <system_error>
 #include <unistd.h>
 
 namespace batten::command {
 
+namespace {
+
+std::atomic<bool> shown = false;
+
+} // namespace
+
+bool progress_is_shown() noexcept {
+    return shown;
+}
+
 Progress::Progress(Show show) {
-    if (show == Show::when_slow && ::isatty(STDERR_FILENO) != 0)
+    if (show == Show::never || ::isatty(STDERR_FILENO) == 0) return;
+    try {
         thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    } catch (const std::system_error&) {
+        // no thread to be had: the work goes on without the line
+    }
 }
 
 Progress::~Progress() {
@@ -27,19 +43,18 @@ void Progress::run(const std::stop_token& stop) {
     using namespace std::chrono_literals;
     const auto start = std::chrono::steady_clock::now();
     std::unique_lock lock(mutex_);
-    bool shown = false;
     auto pause = 1000ms;
     while (!stop.stop_requested()) {
         wake_.wait_for(lock, stop, pause, [] { return false; });
         if (stop.stop_requested()) break;
         const double seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        fmt::print(stderr, "\r\033[K{} ({:.0f} s)", text_, seconds);
-        std::fflush(stderr);
         shown = true;
+        fmt::print(stderr, "{}{} ({:.0f} s)", erased_line, text_, seconds);
+        std::fflush(stderr);
         pause = 200ms;
     }
-    if (shown) fmt::print(stderr, "\r\033[K");
+    if (shown.exchange(false)) fmt::print(stderr, "{}", erased_line);
 }
 
 } // namespace batten::command

@@ -3,15 +3,15 @@
 #include <condition_variable>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 
 namespace batten::command {
 
-/// A line on standard error that says what is being done, shown only on a terminal and only after a
-/// second.
+/// A line on standard error that says what is being done, shown only on a terminal, only after a
+/// second, and only where a thread can be had for it.
 class Progress {
   public:
-    /// `quiet`: never show.
     enum class Show { when_slow, never };
     explicit Progress(Show show);
     ~Progress();
@@ -28,5 +28,11 @@ class Progress {
     std::string text_;
     std::jthread thread_;
 };
+
+/// Takes a line off the terminal.
+inline constexpr std::string_view erased_line = "\r\033[K";
+
+/// Whether the line stands there now; may be called by a signal's handler.
+bool progress_is_shown() noexcept;
 
 } // namespace batten::command

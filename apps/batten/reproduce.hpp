@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,12 +13,19 @@ struct Reproduced {
     double computed;
 };
 
-/// One paper's examples: runs them, writes figures and histories to `folder`, returns the table.
+/// A figure (SVG) or a history (CSV) under its file's name.
+struct Drawing {
+    std::string name;
+    std::string content;
+};
+using Drawings = std::vector<Drawing>;
+
+/// One paper's examples: runs them, draws figures and histories, returns the table.
 struct Paper {
     std::string name;
     std::string citation;
     std::string remark; ///< which data stand in for those that are not public
-    std::vector<Reproduced> (*run)(const std::filesystem::path& folder);
+    std::vector<Reproduced> (*run)(Drawings& drawings);
 };
 
 std::span<const Paper> papers();

@@ -3,8 +3,10 @@
 
 #include <batten/core/errors.hpp>
 #include <batten/core/names.hpp>
+#include <batten/io/output_set.hpp>
 
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 
@@ -24,6 +26,22 @@ void print(const Paper& paper, const std::vector<Reproduced>& table) {
     fmt::print("\n");
 }
 
+/// Asked before the work: throws FileError for a folder that nothing can be put into.
+void check_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    if (std::filesystem::exists(folder, error)) output_place(folder / "figure");
+}
+
+void put_into(const std::filesystem::path& folder, const Drawings& drawings) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+        throw FileError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    OutputSet outputs;
+    for (const Drawing& drawing : drawings) outputs.add(folder / drawing.name, drawing.content);
+    outputs.put_in_place();
+}
+
 void reproduce(const std::string& wanted, const std::filesystem::path& folder) {
     std::vector<std::string_view> names{"all"};
     bool found = wanted == "all";
@@ -32,12 +50,11 @@ void reproduce(const std::string& wanted, const std::filesystem::path& folder) {
         found = found || paper.name == wanted;
     }
     if (!found) throw InvalidInput(unknown_name("paper", wanted, names));
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-        throw FileError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    check_folder(folder);
+    Drawings drawings;
     for (const Paper& paper : papers())
-        if (wanted == "all" || paper.name == wanted) print(paper, paper.run(folder));
+        if (wanted == "all" || paper.name == wanted) print(paper, paper.run(drawings));
+    put_into(folder, drawings);
     fmt::print("figures (SVG) and histories (CSV) are in {}\n", folder.string());
 }
 

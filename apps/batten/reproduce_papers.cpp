@@ -1,8 +1,7 @@
 #include "reproduce.hpp"
 
 #include <batten/fit/fit.hpp>
-#include <batten/io/output_file.hpp>
-#include <batten/io/spline_file.hpp>
+#include <batten/io/svg.hpp>
 #include <batten/samples/generate.hpp>
 #include <batten/shape/polygon.hpp>
 
@@ -22,10 +21,10 @@ namespace {
 constexpr double unprinted = std::numeric_limits<double>::quiet_NaN();
 constexpr double printed_digits = 1e-12; // accuracy of the eigenvalues behind the printed weights
 
-/// Runs a fit with history, writes the history, the limit with its curvature comb, and pictures of
+/// Runs a fit with history, draws the history, the limit with its curvature comb, and pictures of
 /// the steps asked for.
-FitResult figures(const Samples& samples, FitOptions options, const std::filesystem::path& stem,
-                  const std::vector<Index>& steps) {
+FitResult figures(const Samples& samples, FitOptions options, Drawings& drawings,
+                  const std::string& stem, const std::vector<Index>& steps) {
     std::map<Index, PointSet> kept;
     options.keep_history = true;
     options.observer = [&](const Iteration& now) {
@@ -37,17 +36,18 @@ FitResult figures(const Samples& samples, FitOptions options, const std::filesys
     for (const HistoryEntry& h : result.report.history)
         csv += fmt::format("{},{},{},{},{}\n", h.iteration, h.gradient_norm, h.largest_move,
                            h.max_deviation, h.constraint_error);
-    write_file(stem.string() + "_history.csv", csv);
+    drawings.push_back({stem + "_history.csv", csv});
     if (samples.dim() != 2) return result;
     for (const auto& [step, control] : kept) {
         if (control.size() != result.spline.axis(0).free_count())
             continue; // before a knot was inserted
         const Spline spline = Spline::from_free(result.spline.axes(), control);
-        write_spline(fmt::format("{}_step{}.svg", stem.string(), step),
-                     {spline, &samples, fmt::format("step {}", step)});
+        drawings.push_back({fmt::format("{}_step{}.svg", stem, step),
+                            svg_picture({spline, &samples, fmt::format("step {}", step)})});
     }
-    write_spline(stem.string() + "_limit.svg", {result.spline, &samples, "limit"});
-    write_spline(stem.string() + "_comb.svg", {result.spline, nullptr, "curvature comb", true});
+    drawings.push_back({stem + "_limit.svg", svg_picture({result.spline, &samples, "limit"})});
+    drawings.push_back(
+        {stem + "_comb.svg", svg_picture({result.spline, nullptr, "curvature comb", true})});
     return result;
 }
 
@@ -81,7 +81,7 @@ Samples convex_polygon() {
     return samples;
 }
 
-std::vector<Reproduced> pia(const std::filesystem::path& folder) {
+std::vector<Reproduced> pia(Drawings& drawings) {
     constexpr std::array<std::size_t, 5> steps{0, 2, 4, 15, 30};
     const std::array<std::array<double, 5>, 2> table_1{
         {{1.9603, 0.28645, 6.6263e-3, 3.7651e-5, 2.1624e-7},
@@ -95,22 +95,23 @@ std::vector<Reproduced> pia(const std::filesystem::path& folder) {
             rows.push_back({fmt::format("{}, error after {} steps", what, steps[k]),
                             table_1[line][k], result.report.history[steps[k]].max_deviation});
     };
-    add("Fig. 3 helix", figures(paper_helix(), options, folder / "pia_helix", {}), 0);
-    add("Fig. 6 peaks", figures(generate("peaks", {30, 30}), options, folder / "pia_peaks", {}), 1);
+    add("Fig. 3 helix", figures(paper_helix(), options, drawings, "pia_helix", {}), 0);
+    add("Fig. 6 peaks", figures(generate("peaks", {30, 30}), options, drawings, "pia_peaks", {}),
+        1);
     const Samples polygon = convex_polygon();
     const auto inflections = [](const FitResult& r) {
         return static_cast<double>(inflection_count(r.spline.control_points()));
     };
     rows.push_back({"Fig. 5 kind: inflections of the polygon, plain PIA", unprinted,
-                    inflections(figures(polygon, options, folder / "pia_plain", {0, 4}))});
+                    inflections(figures(polygon, options, drawings, "pia_plain", {0, 4}))});
     options.hold.preserve = Preserve::convexity;
     rows.push_back({"Fig. 5 kind: the same, convexity preserved", 0,
-                    inflections(figures(polygon, options, folder / "pia_convex", {0, 4}))});
+                    inflections(figures(polygon, options, drawings, "pia_convex", {0, 4}))});
     rows.back().published = unprinted;
     return rows;
 }
 
-std::vector<Reproduced> epia(const std::filesystem::path& folder) {
+std::vector<Reproduced> epia(Drawings& drawings) {
     std::vector<Reproduced> rows;
     const struct {
         double eta, start, end, iterations;
@@ -120,8 +121,8 @@ std::vector<Reproduced> epia(const std::filesystem::path& folder) {
         options.method = {.name = "epia", .settings = {{"eta", eta}}};
         options.stop = {.max_iterations = 300, .relative_gradient = 0, .deviation = 0.0035};
         Index first = 0;
-        const FitResult result = figures(generate("letter"), options,
-                                         folder / fmt::format("epia_letter_{}", eta), {0, 15});
+        const FitResult result = figures(generate("letter"), options, drawings,
+                                         fmt::format("epia_letter_{}", eta), {0, 15});
         options.stop.max_iterations = 0;
         first = fit(generate("letter"), options).report.control_shape[0];
         rows.push_back({fmt::format("Table 1, eta {}: control points at the start", eta), start,
@@ -137,7 +138,7 @@ std::vector<Reproduced> epia(const std::filesystem::path& folder) {
     options.method.name = "epia";
     options.stop = {.max_iterations = 100, .relative_gradient = 0, .deviation = 0.01};
     const FitResult patch =
-        figures(generate("peaks", {121, 161}), options, folder / "epia_peaks", {});
+        figures(generate("peaks", {121, 161}), options, drawings, "epia_peaks", {});
     rows.push_back(
         {"Table 2, patch: error at the start over that after 100", 0.053347 / 0.002576,
          patch.report.history.front().max_deviation / patch.report.history.back().max_deviation});
@@ -153,7 +154,7 @@ FitOptions example_3(const char* method, Index n, Initial initial) {
     return options;
 }
 
-std::vector<Reproduced> mlspia(const std::filesystem::path& folder) {
+std::vector<Reproduced> mlspia(Drawings& drawings) {
     const Samples rose = generate("rose", {501});
     std::vector<Reproduced> rows;
     const std::array<Index, 7> n{501 / 12, 501 / 10, 501 / 8,    501 / 6,
@@ -170,11 +171,11 @@ std::vector<Reproduced> mlspia(const std::filesystem::path& folder) {
         rows.push_back({fmt::format("Table 1, Example 3, {} control points, II", n[k]), data[k],
                         count(Initial::data)});
     }
-    const FitReport fast = figures(rose, example_3("mlspia", 50, Initial::data),
-                                   folder / "mlspia_example3", {0, 5, 10})
+    const FitReport fast = figures(rose, example_3("mlspia", 50, Initial::data), drawings,
+                                   "mlspia_example3", {0, 5, 10})
                                .report;
     const FitReport slow =
-        figures(rose, example_3("lspia", 50, Initial::data), folder / "lspia_example3", {}).report;
+        figures(rose, example_3("lspia", 50, Initial::data), drawings, "lspia_example3", {}).report;
     rows.push_back({"Table 2, Example 3: omega*", 0.589932226424, fast.settings.at("omega")});
     rows.push_back({"Table 2, Example 3: nu*", 0.418520492365, fast.settings.at("nu")});
     rows.push_back({"Table 2, Example 3: mu* of LSPIA", 0.175097063057, slow.settings.at("mu")});
@@ -201,7 +202,7 @@ std::vector<Reproduced> mlspia(const std::filesystem::path& folder) {
     return rows;
 }
 
-std::vector<Reproduced> clspia(const std::filesystem::path& folder) {
+std::vector<Reproduced> clspia(Drawings& drawings) {
     std::vector<Reproduced> rows;
     const struct {
         const char* name;
@@ -216,7 +217,7 @@ std::vector<Reproduced> clspia(const std::filesystem::path& folder) {
         options.stop = {.max_iterations = 100000, .relative_gradient = 1e-12};
         for (Index i = 0; i < q.size(); i += every) options.hold.interpolate.push_back(i);
         const FitResult result =
-            figures(q, options, folder / fmt::format("clspia_{}", name), {0, 1, 3, 7});
+            figures(q, options, drawings, fmt::format("clspia_{}", name), {0, 1, 3, 7});
         const auto exact = static_cast<double>(options.hold.interpolate.size());
         rows.push_back({fmt::format("Table 1 kind, {}: E after 100 000 iterations or less", name),
                         e, result.report.history.back().constraint_error / exact});
@@ -230,7 +231,7 @@ std::vector<Reproduced> clspia(const std::filesystem::path& folder) {
     options.hold = {.interpolate = {0, 200}, .preserve = Preserve::inflections};
     options.method.name = "clspia";
     options.stop.max_iterations = 2000;
-    const FitResult kept = figures(generate("naca2412"), options, folder / "clspia_shape", {0});
+    const FitResult kept = figures(generate("naca2412"), options, drawings, "clspia_shape", {0});
     rows.push_back({"Fig. 17 kind: inflections with the shape preserved", unprinted,
                     static_cast<double>(kept.report.inflections)});
     return rows;

@@ -3,11 +3,13 @@
 #include "parse.hpp"
 
 #include <batten/io/output_file.hpp>
+#include <batten/io/output_set.hpp>
 #include <batten/io/points_file.hpp>
 #include <batten/io/spline_file.hpp>
 #include <batten/io/svg.hpp>
 #include <batten/measure/deviation.hpp>
 
+#include <array>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
@@ -19,6 +21,7 @@ namespace {
 /// `count` parameters evenly over an axis's domain.
 std::vector<double> even_parameters(const KnotVector& axis, Index count) {
     std::vector<double> t;
+    t.reserve(static_cast<std::size_t>(count));
     for (Index i = 0; i < count; ++i)
         t.push_back(count == 1 ? axis.begin()
                                : axis.begin() + axis.length() * static_cast<double>(i) /
@@ -53,9 +56,12 @@ Samples in_space_of(const Spline& spline, Samples samples) {
 void evaluate_spline(const std::string& path, const std::string& samples,
                      const std::string& parameters, const std::string& output,
                      std::vector<int> orders) {
-    const Spline spline = read_spline(path);
     if (samples.empty() == parameters.empty())
         throw InvalidInput("evaluate: one of --samples and --parameters is needed");
+    std::vector<FileUse> inputs{{path, "the spline"}};
+    if (!parameters.empty()) inputs.push_back({parameters, "--parameters"});
+    check_outputs(std::array{FileUse{output, "--output"}}, inputs);
+    const Spline spline = read_spline(path);
     if (orders.size() == 1) orders.resize(static_cast<std::size_t>(spline.axis_count()), 0);
     if (!parameters.empty()) {
         const PointSet table = read_table(parameters);
@@ -67,6 +73,7 @@ void evaluate_spline(const std::string& path, const std::string& samples,
     if (static_cast<Index>(counts.size()) != spline.axis_count())
         throw InvalidInput(
             fmt::format("--samples {}: the spline has {} axes", samples, spline.axis_count()));
+    check_room(output, counts, spline.dim());
     std::vector<std::vector<double>> axes;
     for (std::size_t k = 0; k < counts.size(); ++k)
         axes.push_back(even_parameters(spline.axes()[k], counts[k]));
@@ -142,9 +149,11 @@ void describe_points(const std::string& path) {
 
 void plot(const std::string& spline_path, const PointFlags& points, const std::string& output,
           bool comb) {
-    if (output != "-" && extension(output) != ".svg")
+    if (extension(output) != ".svg" && !is_stream(output))
         throw InvalidInput(fmt::format("plot: {}: a picture .svg is written", output));
-    if (output != "-") check_folder(output);
+    std::vector<FileUse> inputs{{spline_path, "the spline"}};
+    if (!points.points.empty()) inputs.push_back({points.points, "the points"});
+    check_outputs(std::array{FileUse{output, "--output"}}, inputs);
     const Spline spline = read_spline(spline_path);
     Samples samples;
     std::vector<double> distances;
@@ -158,6 +167,28 @@ void plot(const std::string& spline_path, const PointFlags& points, const std::s
         scene.deviations = &distances;
     }
     write_file(output, svg_picture(scene));
+}
+
+void convert(const std::vector<std::string>& paths, const std::vector<std::string>& outputs,
+             const ExportFlags& exported) {
+    std::vector<FileUse> inputs;
+    for (const std::string& path : paths) inputs.push_back({path, "a spline"});
+    std::vector<FileUse> written;
+    for (const std::string& output : outputs) {
+        check_output(output);
+        written.push_back({output, "--output"});
+    }
+    check_outputs(written, inputs);
+    std::vector<Spline> splines;
+    for (const std::string& path : paths)
+        for (Spline& spline : read_splines(path)) splines.push_back(std::move(spline));
+    Scene scene{.spline = splines.front(),
+                .title = std::filesystem::path(paths.front()).stem().string()};
+    for (std::size_t k = 1; k < splines.size(); ++k) scene.more.push_back(&splines[k]);
+    apply(exported, scene);
+    OutputSet set;
+    for (const std::string& output : outputs) set.add(output, spline_content(output, scene));
+    set.put_in_place();
 }
 
 } // namespace
@@ -245,17 +276,7 @@ void add_convert(CLI::App& app) {
     one_value_each(*sub);
     sub->footer("Examples:\n  batten convert part.json -o part.step --unit m\n"
                 "  batten convert upper.json lower.json -o wing.igs");
-    sub->callback([flags] {
-        for (const std::string& output : flags->outputs) check_output(output);
-        std::vector<Spline> splines;
-        for (const std::string& path : flags->splines)
-            for (Spline& spline : read_splines(path)) splines.push_back(std::move(spline));
-        Scene scene{.spline = splines.front(),
-                    .title = std::filesystem::path(flags->splines.front()).stem().string()};
-        for (std::size_t k = 1; k < splines.size(); ++k) scene.more.push_back(&splines[k]);
-        apply(flags->exported, scene);
-        for (const std::string& output : flags->outputs) write_spline(output, scene);
-    });
+    sub->callback([flags] { convert(flags->splines, flags->outputs, flags->exported); });
 }
 
 } // namespace batten::command

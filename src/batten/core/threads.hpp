@@ -20,7 +20,8 @@ class ThreadLimit {
     State* state_;
 };
 
-/// Calls `work(k)` once for every k in [0, count), in any order, on the threads allowed.
+/// Calls `work(k)` once for every k in [0, count), in any order, on the threads allowed, or on as
+/// many of them as the system gives.
 ///
 /// Results stay bit-identical for any number of threads when each call writes its own place
 /// and the caller merges the places in the order of k.

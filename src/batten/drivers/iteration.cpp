@@ -1,6 +1,7 @@
 #include <batten/drivers/iteration.hpp>
 
 #include <batten/shape/limits.hpp>
+#include <batten/system/normal_system.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -71,7 +72,12 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     Course course{std::move(start.control), {}};
     FitReport& report = course.report;
     const StepLimit limit = shape_limit(options.hold.preserve, axes, course.control, method.name());
-    if (limit) report.allowed_inflections = inflection_count(course.control, axes[0].closure());
+    const auto inflections = [&] { // of the polygon where it stands: rounding can bend it
+        return inflection_count(start.centre.empty() ? course.control
+                                                     : uncentred(course.control, start.centre),
+                                axes[0].closure());
+    };
+    if (limit) report.allowed_inflections = inflections();
     const Summary summary =
         iterate(method, course.control, options.stop,
                 {recording(options, deviation, report), limit, deviation, start.centre});
@@ -84,7 +90,7 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     report.predicted_rate = method.predicted_rate();
     report.settings = method.settings();
     if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
-    if (limit) report.inflections = inflection_count(course.control, axes[0].closure());
+    if (limit) report.inflections = inflections();
     return course;
 }
 

@@ -22,6 +22,15 @@ void note_duplicates(const Parameters& parameters, std::vector<std::string>& not
     }
 }
 
+/// Largest distance of a sample to be hit from the spline at its own parameter.
+double interpolation_error(const Spline& spline, const Samples& samples,
+                           const Parameters& parameters, const HoldOptions& hold) {
+    double worst = 0;
+    for (Index i : hold.interpolate)
+        worst = std::max(worst, distance(spline(parameter_of(parameters, i)), samples.points[i]));
+    return worst;
+}
+
 /// Largest part of its tolerance that a sample is away; the first within is 1 or less, but for
 /// rounding.
 double part_of_tolerance(const std::vector<double>& deviations,
@@ -105,18 +114,16 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     std::vector<std::string> notes = samples.notes;
     if (problem.tolerance.empty()) note_duplicates(fitted.parameters, notes);
     report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
-    const std::vector<double> deviations =
-        parametric_deviations(spline, samples, fitted.parameters);
-    report.deviation = summarise(deviations, fitted.judged_by);
+    const std::vector<double> away =
+        deviations(spline, samples, fitted.parameters, fitted.judged_by);
+    report.deviation = summarise(away, fitted.judged_by);
     report.interpolated = static_cast<Index>(hold.interpolate.size());
-    for (Index i : hold.interpolate)
-        report.constraint_error =
-            std::max(report.constraint_error, deviations[static_cast<std::size_t>(i)]);
+    report.constraint_error = interpolation_error(spline, samples, fitted.parameters, hold);
     report.tangents = static_cast<Index>(hold.tangents.size());
     report.tangent_error = tangent_error(spline, samples, fitted.parameters, hold.tangents);
     report.boundaries = static_cast<Index>(hold.boundaries.size());
     report.boundary_error = boundary_error(spline, hold.boundaries);
-    report.goals = judged(report, problem, deviations);
+    report.goals = judged(report, problem, away);
     const Termination before = report.termination;
     report.termination = ending(report);
     report.verdict = verdict_of(report, before);

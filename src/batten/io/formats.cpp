@@ -1,12 +1,16 @@
+#include <batten/core/counts.hpp>
 #include <batten/core/names.hpp>
 #include <batten/io/exchange_formats.hpp>
 #include <batten/io/output_file.hpp>
+#include <batten/io/output_place.hpp>
 #include <batten/io/point_formats.hpp>
 #include <batten/io/points_file.hpp>
 #include <batten/io/spline_file.hpp>
 #include <batten/io/svg.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -59,8 +63,14 @@ std::vector<SplineFormat>& registry() {
     return all;
 }
 
+/// The extension; a stream without one has that of `otherwise`.
+std::string extension_or(const std::filesystem::path& path, std::string_view otherwise) {
+    std::string wanted = extension(path);
+    return wanted.empty() && is_stream(path) ? std::string(otherwise) : wanted;
+}
+
 const PointFormat& point_format(const std::filesystem::path& path) {
-    const std::string wanted = path == "-" ? ".txt" : extension(path);
+    const std::string wanted = extension_or(path, ".txt");
     std::vector<std::string_view> known;
     for (const PointFormat& format : point_formats) {
         if (format.extension == wanted) return format;
@@ -74,7 +84,7 @@ const PointFormat& point_format(const std::filesystem::path& path) {
 constexpr std::string_view cad_extensions[] = {".step", ".stp", ".igs", ".iges"};
 
 const SplineFormat& spline_format(const std::filesystem::path& path) {
-    const std::string wanted = path == "-" ? ".json" : extension(path);
+    const std::string wanted = extension_or(path, ".json");
     std::vector<std::string_view> known;
     for (const SplineFormat& format : registry()) {
         if (format.extension == wanted) return format;
@@ -128,6 +138,10 @@ Samples points_from(NumberArray array, const std::vector<Index>& grid,
 } // namespace
 
 Samples read_points(const std::filesystem::path& path, const ReadOptions& options) {
+    if (options.heights && !options.grid.empty())
+        throw InvalidInput(fmt::format("{}: a table of heights is a grid already; it is read with "
+                                       "a grid's shape or as heights",
+                                       path.string()));
     NumberArray array = read_numbers(path);
     Samples samples = options.heights ? heights_from(std::move(array), options.spacing, path)
                                       : points_from(std::move(array), options.grid, path);
@@ -138,16 +152,39 @@ Samples read_points(const std::filesystem::path& path, const ReadOptions& option
 
 PointSet read_table(const std::filesystem::path& path) {
     NumberArray array = read_numbers(path);
-    return {std::move(array.values), array.shape.size() < 2 ? 1 : array.shape.back()};
+    PointSet table(std::move(array.values), array.shape.size() < 2 ? 1 : array.shape.back());
+    for (Index i = 0; i < table.size(); ++i)
+        for (double x : table[i])
+            if (!std::isfinite(x))
+                throw FileError(
+                    fmt::format("{}: row {}: {} is not a finite number", path.string(), i, x));
+    return table;
 }
 
-void write_points(const std::filesystem::path& path, const Points& points,
-                  const std::vector<Index>& grid) {
+void check_room(const std::filesystem::path& path, std::span<const Index> counts, Index dim) {
+    // a number takes 8 bytes, its text up to 25, of which half as much again while it grows
+    const Index copies = point_format(path).format == format_npy ? 2 : 6;
+    std::vector<Index> doubles(counts.begin(), counts.end());
+    const std::string what = fmt::format("{} points", fmt::join(counts, "x"));
+    checked_product(counts, what);
+    doubles.insert(doubles.end(), {dim, copies});
+    check_memory(checked_product(doubles, what), what);
+}
+
+std::string points_content(const std::filesystem::path& path, const Points& points,
+                           const std::vector<Index>& grid) {
     const PointFormat& format = point_format(path);
     if (format.format == nullptr)
         throw InvalidInput(fmt::format("{}: {} files of points are read, not written",
                                        path.string(), format.extension));
-    write_file(path, format.format(points, grid));
+    check({.points = points, .grid = grid});
+    check_room(path, std::array{points.size()}, points.dim());
+    return format.format(points, grid);
+}
+
+void write_points(const std::filesystem::path& path, const Points& points,
+                  const std::vector<Index>& grid) {
+    write_file(path, points_content(path, points, grid));
 }
 
 std::span<const SplineFormat> spline_formats() {
@@ -160,15 +197,7 @@ void register_format(SplineFormat format) {
 
 void check_output(const std::filesystem::path& path) {
     spline_format(path);
-    check_folder(path);
-}
-
-void check_folder(const std::filesystem::path& path) {
-    if (path == "-") return;
-    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-    if (!std::filesystem::is_directory(folder))
-        throw FileError(
-            fmt::format("{}: the folder {} does not exist", path.string(), folder.string()));
+    output_place(path);
 }
 
 std::vector<Spline> read_splines(const std::filesystem::path& path) {
@@ -194,12 +223,46 @@ bool is_spline_file(const std::filesystem::path& path) {
     });
 }
 
-void write_spline(const std::filesystem::path& path, const Scene& scene) {
+namespace {
+
+/// What every format relies on.
+void check_scene(const Scene& scene) {
+    constexpr std::string_view units[] = {"mm", "cm", "m", "in"};
+    if (std::ranges::count(units, std::string_view(scene.unit)) == 0)
+        throw InvalidInput(unknown_name("unit", scene.unit, units));
+    if (!(scene.chord_tolerance >= 0) || !std::isfinite(scene.chord_tolerance))
+        throw InvalidInput(
+            fmt::format("chord tolerance {}: must be positive and finite, or 0 for a thousandth of "
+                        "the size",
+                        scene.chord_tolerance));
+    if (scene.deviations != nullptr && scene.samples != nullptr &&
+        static_cast<Index>(scene.deviations->size()) != scene.samples->size())
+        throw InvalidInput(fmt::format("scene: {} deviations given for {} samples",
+                                       scene.deviations->size(), scene.samples->size()));
+    for (const Spline* spline : scene.splines()) {
+        const PointSet& control = spline->control_points();
+        for (Index i = 0; i < control.size(); ++i)
+            for (double x : control[i])
+                if (!std::isfinite(x))
+                    throw InvalidInput(fmt::format("spline: control point {} is ({}); only finite "
+                                                   "numbers are written",
+                                                   i, fmt::join(control[i], ", ")));
+    }
+}
+
+} // namespace
+
+std::string spline_content(const std::filesystem::path& path, const Scene& scene) {
     const SplineFormat& format = spline_format(path);
     if (!format.several && !scene.more.empty())
         throw InvalidInput(fmt::format("{}: {} files hold one spline, got {}", path.string(),
                                        format.extension, scene.more.size() + 1));
-    write_file(path, format.write(scene));
+    check_scene(scene);
+    return format.write(scene);
+}
+
+void write_spline(const std::filesystem::path& path, const Scene& scene) {
+    write_file(path, spline_content(path, scene));
 }
 
 } // namespace batten

@@ -1,8 +1,15 @@
 #include <batten/io/spline_file.hpp>
 
+#include <batten/core/names.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace batten {
 
@@ -19,14 +26,55 @@ std::string over_axes(const Spline& spline, Entry entry) {
     return text + "]";
 }
 
-Spline build(const Json& json) {
-    if (!json.is_object() || json.value("format", "") != "batten-spline")
+/// A list of whole numbers; the library's own conversion would cut off fractions and wrap what is
+/// too large.
+template <class Number>
+std::vector<Number> whole_numbers(const Json& json, const char* key) {
+    std::vector<Number> result;
+    for (const Json& entry : json.at(key)) {
+        const bool whole = entry.is_number_integer() &&
+                           (!entry.is_number_unsigned() ||
+                            entry.get<std::uint64_t>() <= std::numeric_limits<Index>::max());
+        if (!whole || !std::in_range<Number>(entry.get<Index>()))
+            throw InvalidInput(
+                fmt::format("{}: {} is not a whole number in range", key, entry.dump()));
+        result.push_back(entry.get<Number>());
+    }
+    return result;
+}
+
+void check_head(const Json& json) {
+    if (!json.is_object() || !json.contains("format") || json["format"] != "batten-spline")
         throw InvalidInput("\"format\" is not \"batten-spline\"");
-    if (json.at("version").get<int>() != 1)
+    if (json.at("version") != 1)
         throw InvalidInput(fmt::format("version {} is not 1", json.at("version").dump()));
-    const auto degree = json.at("degree").get<std::vector<int>>();
+    constexpr std::string_view known[] = {"format", "version",       "degree",        "closed",
+                                          "knots",  "control_shape", "control_points"};
+    for (const auto& [key, value] : json.items())
+        if (std::ranges::count(known, std::string_view(key)) == 0)
+            throw InvalidInput(unknown_name("key", key, known));
+}
+
+/// Numbers that are finite, but whose differences or quotients are not, make no spline.
+void check_extents(const std::vector<KnotVector>& axes, const PointSet& control) {
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+        const std::vector<double> breaks = axes[k].breakpoints();
+        for (std::size_t b = 0; b + 1 < breaks.size(); ++b)
+            if (const double span = breaks[b + 1] - breaks[b];
+                !std::isnormal(span) || !std::isfinite(1 / span))
+                throw InvalidInput(fmt::format("axis {}: between knots {} and {} nothing can be "
+                                               "computed",
+                                               k, breaks[b], breaks[b + 1]));
+    }
+    if (!std::isfinite(diagonal(control)))
+        throw InvalidInput("control_points: they are so far apart that nothing can be computed");
+}
+
+Spline build(const Json& json) {
+    check_head(json);
+    const auto degree = whole_numbers<int>(json, "degree");
     const auto knots = json.at("knots").get<std::vector<std::vector<double>>>();
-    const auto shape = json.at("control_shape").get<std::vector<Index>>();
+    const auto shape = whole_numbers<Index>(json, "control_shape");
     const auto closed = json.value("closed", std::vector<bool>(degree.size(), false));
     if (knots.size() != degree.size() || shape.size() != degree.size() ||
         closed.size() != degree.size())
@@ -50,6 +98,7 @@ Spline build(const Json& json) {
                                            i, point.size(), control.dim()));
         std::copy(point.begin(), point.end(), control[static_cast<Index>(i)].begin());
     }
+    check_extents(axes, control);
     return {std::move(axes), std::move(control)};
 }
 

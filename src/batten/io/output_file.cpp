@@ -1,12 +1,13 @@
 #include <batten/io/output_file.hpp>
 
+#include <batten/core/counts.hpp>
 #include <batten/core/errors.hpp>
+#include <batten/io/output_set.hpp>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fmt/format.h>
-#include <unistd.h>
 
 namespace batten {
 
@@ -15,71 +16,51 @@ namespace {
 /// A C file closed with its scope.
 class File {
   public:
-    File(const std::filesystem::path& path, const char* mode)
-        : file_(std::fopen(path.c_str(), mode)) {}
-    ~File() { close(); }
+    explicit File(const std::filesystem::path& path) : file_(std::fopen(path.c_str(), "rbe")) {}
+    ~File() {
+        if (file_ != nullptr) std::fclose(file_);
+    }
     File(const File&) = delete;
     File& operator=(const File&) = delete;
     std::FILE* get() const { return file_; }
-    /// False when buffered data could not be written.
-    bool close() {
-        const bool good = file_ == nullptr || std::fclose(file_) == 0;
-        file_ = nullptr;
-        return good;
-    }
 
   private:
     std::FILE* file_;
 };
 
-[[noreturn]] void fail(const std::filesystem::path& path, std::string_view what, int error) {
-    throw FileError(fmt::format("{}: {}: {}", path.string(), what, std::strerror(error)));
+[[noreturn]] void fail(const std::string& name, int error) {
+    throw FileError(fmt::format("{}: cannot be read: {}", name, std::strerror(error)));
 }
 
-std::string read_all(std::FILE* file) {
+std::string read_all(const std::string& name, std::FILE* file) {
     std::string content;
     char buffer[1 << 16];
-    while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file))
+    std::size_t asked_at = 1 << 26; // a stream may have no end
+    while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) {
         content.append(buffer, count);
+        if (content.size() < asked_at) continue;
+        asked_at *= 2;
+        check_memory(static_cast<Index>(asked_at / sizeof(double)), name);
+    }
+    if (std::ferror(file) != 0) fail(name, errno);
     return content;
 }
 
 } // namespace
 
-void write_file(const std::filesystem::path& path, std::string_view content) {
-    if (path == "-") {
-        if (std::fwrite(content.data(), 1, content.size(), stdout) != content.size() ||
-            std::fflush(stdout) != 0)
-            fail("standard output", "cannot be written", errno);
-        return;
-    }
-    std::filesystem::path temporary = path;
-    temporary += fmt::format(".part{}", ::getpid());
-    File file(temporary, "wb");
-    if (file.get() == nullptr) fail(path, "cannot be written", errno);
-    const bool written =
-        std::fwrite(content.data(), 1, content.size(), file.get()) == content.size();
-    const int error = errno;
-    if (!written || !file.close()) {
-        const int reason = written ? errno : error;
-        std::remove(temporary.c_str());
-        fail(path, "cannot be written", reason);
-    }
-    if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-        const int reason = errno;
-        std::remove(temporary.c_str());
-        fail(path, "cannot be replaced", reason);
-    }
+void write_file(const std::filesystem::path& path, std::string content) {
+    OutputSet output;
+    output.add(path, std::move(content));
+    output.put_in_place();
 }
 
 std::string read_file(const std::filesystem::path& path) {
-    if (path == "-") return read_all(stdin);
-    if (std::filesystem::is_directory(path)) fail(path, "cannot be read", EISDIR);
-    const File file(path, "rb");
-    if (file.get() == nullptr) fail(path, "cannot be read", errno);
-    std::string content = read_all(file.get());
-    if (std::ferror(file.get()) != 0) fail(path, "cannot be read", errno);
-    return content;
+    if (path == "-") return read_all("standard input", stdin);
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) fail(path.string(), EISDIR);
+    const File file(path);
+    if (file.get() == nullptr) fail(path.string(), errno);
+    return read_all(path.string(), file.get());
 }
 
 std::string extension(const std::filesystem::path& path) {

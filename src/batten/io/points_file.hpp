@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace batten {
@@ -17,16 +18,28 @@ struct ReadOptions {
     std::array<double, 2> spacing{1, 1};
 };
 
-/// Reads points by extension: .csv .txt .xyz .dat (text), .npy; `-` is text from standard input.
-/// Throws FileError naming path, line and column, or InvalidInput for a grid that does not match.
+/// Reads points by extension: .csv .txt .xyz .dat (text), .npy; `-` is text from standard input,
+/// as is any stream without extension.
+/// Throws FileError naming path, line and column, or InvalidInput for a grid that does not match or
+/// is given beside heights.
 Samples read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Writes points by extension: .csv .txt .xyz .dat (text), .npy (with the grid's shape); `-` is
-/// text to standard output. Throws FileError; an existing file is replaced only by a complete one.
+/// What a file of points holds, by extension: .csv .txt .xyz .dat (text), .npy (with the grid's
+/// shape); of `-`, or a stream without extension, text. Throws InvalidInput for another extension,
+/// a coordinate that is not finite, a grid that does not match, or more than memory holds.
+std::string points_content(const std::filesystem::path& path, const Points& points,
+                           const std::vector<Index>& grid = {});
+
+/// Throws InvalidInput when memory cannot hold `counts` points per axis of dimension `dim` and what
+/// the file will hold of them: to be asked before they are made.
+void check_room(const std::filesystem::path& path, std::span<const Index> counts, Index dim);
+
+/// Writes points_content. Throws FileError; an existing file is replaced only by a complete one.
 void write_points(const std::filesystem::path& path, const Points& points,
                   const std::vector<Index>& grid = {});
 
-/// Reads a table of numbers (rows x columns) from a text or .npy file: parameters, weights, knots.
+/// Reads a table of finite numbers (rows x columns) from a text or .npy file: parameters, weights,
+/// knots. Throws FileError.
 PointSet read_table(const std::filesystem::path& path);
 
 } // namespace batten

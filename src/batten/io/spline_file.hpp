@@ -58,12 +58,9 @@ std::span<const SplineFormat> spline_formats();
 /// Adds a format, before any thread uses the registry.
 void register_format(SplineFormat format);
 
-/// Throws InvalidInput when no spline format has the extension, FileError when the folder does not
-/// exist: to be asked before the work, so that a fit is not lost to a slip of the pen.
+/// Throws InvalidInput when no spline format has the extension, FileError when the file cannot be
+/// written there: to be asked before the work, so that a fit is not lost to a slip of the pen.
 void check_output(const std::filesystem::path& path);
-
-/// Throws FileError when the folder of `path` does not exist.
-void check_folder(const std::filesystem::path& path);
 
 /// Reads a spline by extension, the only one of its file; throws FileError with path and place.
 Spline read_spline(const std::filesystem::path& path);
@@ -74,8 +71,12 @@ std::vector<Spline> read_splines(const std::filesystem::path& path);
 /// Whether some format of splines that can be read has the file's extension.
 bool is_spline_file(const std::filesystem::path& path);
 
-/// Writes by extension; `-` is JSON to standard output. An existing file is replaced only by a
-/// complete one.
+/// What a file of the scene holds, by extension; of `-`, or a stream without extension, JSON.
+/// Throws InvalidInput for what the format cannot hold: several splines, dimensions, numbers that
+/// are not finite, an unknown unit.
+std::string spline_content(const std::filesystem::path& path, const Scene& scene);
+
+/// Writes spline_content. Throws FileError; an existing file is replaced only by a complete one.
 void write_spline(const std::filesystem::path& path, const Scene& scene);
 
 /// The JSON of docs/formats.md, numbers exact.

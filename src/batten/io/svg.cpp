@@ -96,8 +96,12 @@ std::vector<Tooth> comb_of(const Spline& curve, double size) {
         for (int s = 0; s < per_span; ++s) {
             const std::array t{breaks[b] + (breaks[b + 1] - breaks[b]) * (s + 0.5) / per_span};
             const auto p = curve(t);
-            const auto d1 = curve(t, std::array{1});
-            const auto d2 = curve(t, std::array{2});
+            auto d1 = curve(t, std::array{1});
+            auto d2 = curve(t, std::array{2});
+            for (std::size_t d = 0; d < 2; ++d) { // in sizes: cubes of any unit would overflow
+                d1[d] /= size;
+                d2[d] /= size;
+            }
             const double speed = std::hypot(d1[0], d1[1]);
             if (!(speed > 0)) continue;
             const double curvature = (d1[0] * d2[1] - d1[1] * d2[0]) / (speed * speed * speed);

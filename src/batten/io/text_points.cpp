@@ -39,6 +39,23 @@ NumberArray join_sides(const TextTable& table) {
     return result;
 }
 
+/// Whether the first column numbers the rows: 0, 1, 2, ...
+bool counts_rows(const TextTable& table) {
+    for (Index row = 0; row < table.rows(); ++row)
+        if (table(row, 0) != static_cast<double>(row)) return false;
+    return true;
+}
+
+NumberArray without_first_column(const TextTable& table) {
+    NumberArray result;
+    result.values.reserve(table.values.size());
+    for (Index row = 0; row < table.rows(); ++row)
+        for (Index c = 1; c < table.columns; ++c) result.values.push_back(table(row, c));
+    result.shape = {table.rows(), table.columns - 1};
+    result.notes.emplace_back("the first column has no name and counts the rows: left out");
+    return result;
+}
+
 } // namespace
 
 NumberArray parse_text(const std::filesystem::path& path, std::string_view text) {
@@ -48,10 +65,16 @@ NumberArray parse_text(const std::filesystem::path& path, std::string_view text)
     NumberArray result;
     if (airfoil && has_count_line(table)) {
         result = join_sides(table);
+    } else if (table.first_column == FirstColumn::unnamed && counts_rows(table)) {
+        result = without_first_column(table);
     } else {
         result.shape = {table.rows(), table.columns};
         result.values = std::move(table.values);
     }
+    if (table.first_column == FirstColumn::unnamed && result.notes.empty())
+        result.notes.emplace_back(
+            "the first column has no name but does not count the rows: read as "
+            "a coordinate");
     if (table.note_lines > 0)
         result.notes.push_back(fmt::format("{} line{} of text after the points left out",
                                            table.note_lines, table.note_lines == 1 ? "" : "s"));

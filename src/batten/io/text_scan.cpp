@@ -1,5 +1,6 @@
 #include <batten/io/text_scan.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
 
@@ -68,13 +69,8 @@ class Scanner {
         double first = 0;
         const bool starts_with_number = parse(tokens_[0].text, first);
         if (in_notes_) return check_note(number, starts_with_number);
-        // a name does not start like a number: "1e400" or "1.5.2" is a number gone wrong
-        const char begin = tokens_[0].text.front();
-        const bool like_a_number = layout_ == TextLayout::table &&
-                                   ((begin >= '0' && begin <= '9') || begin == '.' ||
-                                    ((begin == '-' || begin == '+') && tokens_[0].text.size() > 1));
-        if (!starts_with_number && !like_a_number && table_.rows() == 0 && may_be_title()) {
-            ++table_.title_lines;
+        if (!starts_with_number && table_.rows() == 0 && may_be_title() && is_title()) {
+            title(text);
             return;
         }
         if (!starts_with_number && table_.rows() > 0 && layout_ == TextLayout::airfoil) {
@@ -88,7 +84,37 @@ class Scanner {
     TextTable take() { return std::move(table_); }
 
   private:
+    /// How a header leaves its first column without a name: an empty field, or a tab at the front.
+    enum class Unnamed { no, by_comma, by_tab };
+
     bool may_be_title() const { return layout_ == TextLayout::airfoil || table_.title_lines == 0; }
+
+    /// Whether a line that does not start with a number names columns. A name does not start like a
+    /// number, "1e400" or "1.5.2" is a number gone wrong; and an empty field is no name, unless
+    /// names follow.
+    bool is_title() const {
+        if (layout_ == TextLayout::airfoil) return true;
+        const std::string_view first = tokens_[0].text;
+        if (first.empty())
+            return tokens_.size() > 1 &&
+                   std::all_of(tokens_.begin() + 1, tokens_.end(), [](const Token& token) {
+                       double value = 0;
+                       return !token.text.empty() && !parse(token.text, value);
+                   });
+        const char begin = first.front();
+        return !((begin >= '0' && begin <= '9') || begin == '.' ||
+                 ((begin == '-' || begin == '+') && first.size() > 1));
+    }
+
+    void title(std::string_view text) {
+        ++table_.title_lines;
+        names_ = static_cast<Index>(tokens_.size());
+        const std::string_view first = tokens_[0].text;
+        if (first.empty() || first == "\"\"")
+            first_ = Unnamed::by_comma;
+        else if (text.starts_with('\t'))
+            first_ = Unnamed::by_tab;
+    }
 
     void check_note(Index number, bool starts_with_number) {
         double value = 0;
@@ -104,7 +130,7 @@ class Scanner {
         const auto width = static_cast<Index>(tokens_.size());
         if (table_.rows() == 1 && width != table_.columns && layout_ == TextLayout::airfoil)
             drop_first_row();
-        if (table_.rows() == 0) table_.columns = width;
+        if (table_.rows() == 0) start_rows(width);
         const std::size_t size_before = table_.values.size();
         for (const Token& token : tokens_) {
             double value = 0;
@@ -124,6 +150,14 @@ class Scanner {
         table_.lines.push_back(number);
     }
 
+    void start_rows(Index width) {
+        table_.columns = width;
+        const bool unnamed = (first_ == Unnamed::by_comma && names_ == width) ||
+                             (first_ == Unnamed::by_tab && names_ + 1 == width);
+        if (unnamed && layout_ == TextLayout::table && width > 1)
+            table_.first_column = FirstColumn::unnamed;
+    }
+
     /// An airfoil's first line of numbers in another width is a title ("2412") or a plotting range.
     void drop_first_row() {
         table_.values.clear();
@@ -136,6 +170,8 @@ class Scanner {
     TextLayout layout_;
     TextTable table_;
     std::vector<Token> tokens_;
+    Index names_ = 0;
+    Unnamed first_ = Unnamed::no;
     bool blank_ = false;
     bool in_notes_ = false;
 };

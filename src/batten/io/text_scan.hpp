@@ -8,6 +8,10 @@
 
 namespace batten {
 
+/// Whether a header names every column, or leaves the first one without a name as pandas does with
+/// its index.
+enum class FirstColumn { like_others, unnamed };
+
 /// Numbers of a text file in rows of one width.
 struct TextTable {
     std::vector<double> values;
@@ -16,6 +20,8 @@ struct TextTable {
     std::vector<Index> lines;
     /// Leading lines that are text: a header or a title.
     Index title_lines = 0;
+    /// What the header says of the first column.
+    FirstColumn first_column = FirstColumn::like_others;
     /// Trailing lines that are text (only after a title line in an airfoil file).
     Index note_lines = 0;
     /// Rows before which a blank line stands.
@@ -30,7 +36,8 @@ struct TextTable {
 /// Whether titles of any text and trailing notes are expected.
 enum class TextLayout { table, airfoil };
 
-/// Scans numbers separated by commas, semicolons, blanks or tabs; `#` starts a comment.
+/// Scans numbers separated by commas, semicolons, blanks or tabs; `#` starts a comment. The first
+/// line of a table may be a header: text, or an empty field before text.
 /// Throws FileError `path:line:column: ...` for text where a number belongs and `path:line: ...`
 /// for a row of another width than the first.
 TextTable scan_text(const std::filesystem::path& path, std::string_view text, TextLayout layout);

@@ -35,6 +35,12 @@ std::vector<double> parametric_deviations(const Spline& spline, const Samples& s
     return curve_deviations(spline, samples.points, parameters.axes[0]);
 }
 
+std::vector<double> deviations(const Spline& spline, const Samples& samples,
+                               const Parameters& parameters, DeviationKind kind) {
+    return kind == DeviationKind::distance ? closest_distances(spline, samples, parameters)
+                                           : parametric_deviations(spline, samples, parameters);
+}
+
 Deviation summarise(const std::vector<double>& deviations, DeviationKind kind) {
     Deviation result{.maximum = 0, .rms = 0, .worst_sample = 0, .kind = kind};
     double sum = 0;

@@ -25,6 +25,10 @@ struct Deviation {
 std::vector<double> parametric_deviations(const Spline& spline, const Samples& samples,
                                           const Parameters& parameters);
 
+/// One deviation per sample, of the given kind.
+std::vector<double> deviations(const Spline& spline, const Samples& samples,
+                               const Parameters& parameters, DeviationKind kind);
+
 /// Maximum, its first sample and root mean square of the given deviations.
 Deviation summarise(const std::vector<double>& deviations, DeviationKind kind);
 

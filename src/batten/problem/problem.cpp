@@ -1,9 +1,11 @@
 #include <batten/problem/problem.hpp>
 
+#include <batten/core/counts.hpp>
 #include <batten/parametrize/noise_aware.hpp>
 #include <batten/problem/held.hpp>
 #include <batten/problem/plan.hpp>
 
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -35,6 +37,18 @@ void check_counts(const Problem& problem) {
             throw InvalidInput(
                 fmt::format("axis {}: {} control points need at least as many samples, got {}", k,
                             n[k], shape[k]));
+}
+
+/// Memory must hold the control points, and of a cloud the normal system: half of the numbers for
+/// the control points within degree on each side, for each.
+void check_net(const Problem& problem) {
+    constexpr std::string_view what = "control points";
+    Index system = 1;
+    if (problem.kind == SampleKind::cloud)
+        for (int degree : problem.axes.degree) system *= system == 1 ? degree + 1 : 2 * degree + 1;
+    const std::array numbers{checked_product(problem.axes.control_points, what),
+                             std::max(problem.samples.dim(), system)};
+    check_memory(checked_product(numbers, what), what);
 }
 
 void check_smoothing(const SmoothOptions& smooth, const AxisPlan& axes) {
@@ -144,6 +158,7 @@ Problem problem_of(const Samples& samples, const FitOptions& options) {
         problem.kind == SampleKind::cloud ? shape.parameters->axis_count() : samples.axis_count();
     problem.axes = plan_axes(shape, axes);
     check_counts(problem);
+    check_net(problem);
     check_seam(options, problem.axes);
     check_smoothing(options.smooth, problem.axes);
     check_held(options.hold, problem.samples, problem.kind, problem.axes);

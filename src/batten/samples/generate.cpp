@@ -1,5 +1,6 @@
 #include <batten/samples/generate.hpp>
 
+#include <batten/core/counts.hpp>
 #include <batten/core/names.hpp>
 
 #include <algorithm>
@@ -199,6 +200,9 @@ Samples generate(std::string_view name, std::vector<Index> size) {
             if (m < 2 || m > 100'000'000)
                 throw InvalidInput(
                     fmt::format("{}: {} samples along an axis is outside 2 to 100000000", name, m));
+        size.push_back(3); // coordinates at most
+        check_memory(checked_product(size, name), name);
+        size.pop_back();
         return g.make(std::move(size));
     }
     throw InvalidInput(unknown_name("data set", name, names));

@@ -1,5 +1,7 @@
 #include <batten/samples/samples.hpp>
 
+#include <batten/core/counts.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -20,7 +22,7 @@ void check_shape(const Samples& samples) {
     if (samples.grid.size() < 2 || samples.grid.size() > 3)
         throw InvalidInput(
             fmt::format("grid: {} axes given, 2 or 3 are possible", samples.grid.size()));
-    const Index product = GridIndex(samples.grid).size();
+    const Index product = checked_product(samples.grid, "grid");
     if (product != samples.size())
         throw InvalidInput(fmt::format("grid: {} needs {} samples, got {}",
                                        fmt::join(samples.grid, "x"), product, samples.size()));
@@ -132,7 +134,18 @@ PointSet bounding_box(const Points& points) {
 
 double diagonal(const Points& points) {
     const PointSet box = bounding_box(points);
-    return distance(box[0], box[1]);
+    const double plain = distance(box[0], box[1]);
+    if (plain > 0 && std::isfinite(plain)) return plain;
+    // the squares may have left the range of numbers although the length has not
+    double largest = 0;
+    for (Index d = 0; d < box.dim(); ++d) largest = std::max(largest, box(1, d) - box(0, d));
+    if (!(largest > 0) || !std::isfinite(largest)) return largest;
+    double squares = 0;
+    for (Index d = 0; d < box.dim(); ++d) {
+        const double part = (box(1, d) - box(0, d)) / largest;
+        squares += part * part;
+    }
+    return largest * std::sqrt(squares);
 }
 
 } // namespace batten
