@@ -91,6 +91,7 @@ class Places(Files):
             # an ordinary user cannot make devices, but cannot replace those of the system either
             for verb, words, name in self.each_writer("dev"):
                 with self.subTest(verb):
+                    (self.folder / name).unlink(missing_ok=True)
                     (self.folder / name).symlink_to("/dev/full")
                     self.bad(3, f"{name}: cannot be written: No space left on device", *words)
             return
