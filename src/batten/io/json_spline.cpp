@@ -66,8 +66,10 @@ void check_extents(const std::vector<KnotVector>& axes, const PointSet& control)
                                                "computed",
                                                k, breaks[b], breaks[b + 1]));
     }
-    if (!std::isfinite(diagonal(control)))
-        throw InvalidInput("control_points: they are so far apart that nothing can be computed");
+    for (double x : control.values())
+        if (!std::isfinite(2 * x))
+            throw InvalidInput(
+                fmt::format("control_points: {} is so large that nothing can be computed", x));
 }
 
 Spline build(const Json& json) {
