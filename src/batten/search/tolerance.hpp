@@ -11,7 +11,8 @@ namespace batten {
 /// the point at its own parameters (for heights the height difference).
 ///
 /// Not reaching the tolerance is no error: the report's termination is tolerance_not_met, the
-/// verdict says why, and the spline is the best smooth one found. More than nine tenths of the
+/// verdict says why, and the spline is the closest one found that is not wild between samples, or
+/// the best smooth one where the samples' noise is known and too much. More than nine tenths of the
 /// samples are never used as control points. Throws InvalidInput for a tolerance that is not
 /// positive.
 FitResult fit_to_tolerance(const Samples& samples, const FitOptions& options);
