@@ -49,7 +49,7 @@ std::optional<PlaceInPiece> where_the_last_ended(const BezierPieces&, Index) {
 }
 
 /// The parameters of sample i of a sequence, a grid or a cloud.
-std::array<double, 3> parameter_of(const Parameters& parameters, Index i) {
+std::array<double, 3> own_parameter(const Parameters& parameters, Index i) {
     std::array<double, 3> t{};
     if (parameters.is_scattered()) {
         std::ranges::copy(parameters.scattered[i], t.begin());
@@ -64,10 +64,7 @@ std::array<double, 3> parameter_of(const Parameters& parameters, Index i) {
 }
 
 Index count_of(const Parameters& parameters) {
-    if (parameters.is_scattered()) return parameters.scattered.size();
-    Index count = 1;
-    for (const auto& axis : parameters.axes) count *= static_cast<Index>(axis.size());
-    return count;
+    return parameters.is_scattered() ? parameters.scattered.size() : parameters.grid().size();
 }
 
 } // namespace
@@ -101,7 +98,7 @@ std::vector<double> closest_distances(const Spline& spline, const Samples& sampl
     search_all(
         spline, samples.points,
         [&](const BezierPieces& pieces, Index i) {
-            const std::array<double, 3> t = parameter_of(starts, i);
+            const std::array<double, 3> t = own_parameter(starts, i);
             return std::optional(
                 pieces.place({t.data(), static_cast<std::size_t>(spline.axis_count())}));
         },
