@@ -1,6 +1,8 @@
 #include <batten/problem/held.hpp>
 
 #include <batten/basis/place_knots.hpp>
+#include <batten/core/grid_index.hpp>
+#include <batten/core/vectors.hpp>
 #include <batten/measure/deviation.hpp>
 
 #include <algorithm>
@@ -12,18 +14,6 @@
 namespace batten {
 
 namespace {
-
-double length_of(std::span<const double> v) {
-    double square = 0;
-    for (double x : v) square += x * x;
-    return std::sqrt(square);
-}
-
-double dot(std::span<const double> a, std::span<const double> b) {
-    double sum = 0;
-    for (std::size_t d = 0; d < a.size(); ++d) sum += a[d] * b[d];
-    return sum;
-}
 
 std::string name_of(const HeldBoundary& boundary) {
     return fmt::format("boundary {}{}", "uvw"[boundary.axis],
@@ -42,7 +32,7 @@ void check_tangent(const HeldTangent& tangent, const Samples& samples, SampleKin
     if (tangent.axis < 0 || tangent.axis >= axes)
         throw InvalidInput(
             fmt::format("tangent at sample {}: axis {} does not exist", i, tangent.axis));
-    const double length = length_of(tangent.value);
+    const double length = norm(tangent.value);
     if (!std::isfinite(length) || (tangent.kind == TangentKind::direction && !(length > 0)))
         throw InvalidInput(
             fmt::format("tangent at sample {}: a finite vector of some length is needed", i));
@@ -118,15 +108,13 @@ void hold_boundary(const HeldBoundary& boundary, const std::vector<KnotVector>& 
     for (int k = 0; k < static_cast<int>(axes.size()); ++k)
         if (k != boundary.axis)
             spline = refine(spline, boundary_axis(boundary, k), axes[static_cast<std::size_t>(k)]);
-    const std::vector<Index> shape = free_shape(axes);
+    const GridIndex net(free_shape(axes));
     const auto axis = static_cast<std::size_t>(boundary.axis);
-    Index inner = 1;
-    for (std::size_t k = axis + 1; k < shape.size(); ++k) inner *= shape[k];
-    const Index at = boundary.end == AxisEnd::begin ? 0 : shape[axis] - 1;
-    const PointSet& control = spline.control_points();
-    for (Index i = 0; i < control.size(); ++i)
-        constraints.fix((i / inner * shape[axis] + at) * inner + i % inner, control[i],
-                        name_of(boundary));
+    const Index at = boundary.end == AxisEnd::begin ? 0 : net.length(axis) - 1;
+    Index next = 0;
+    net.for_each_strand(axis, [&](const GridIndex::Strand& strand) {
+        constraints.fix(strand[at], spline.control_points()[next++], name_of(boundary));
+    });
 }
 
 } // namespace
@@ -164,29 +152,45 @@ Constraints held_constraints(const std::vector<KnotVector>& axes, const Samples&
     return result;
 }
 
+namespace {
+
+/// Along the axis that a grid's boundary has, ascending parts of it: those of the closest points of
+/// the samples beside it, from 0 to 1.
+std::vector<double> parts_along(const HeldBoundary& boundary, const Samples& samples) {
+    const GridIndex grid(samples.grid);
+    const auto across = static_cast<std::size_t>(boundary.axis);
+    const Index m = grid.length(1 - across);
+    PointSet row(m, samples.dim());
+    for (Index j = 0; j < m; ++j) {
+        GridIndex::Place place{};
+        place[across] = boundary.end == AxisEnd::begin ? 0 : grid.length(across) - 1;
+        place[1 - across] = j;
+        std::ranges::copy(samples.points[grid.at(place)], row[j].begin());
+    }
+    const KnotVector& knots = boundary.spline.axis(0);
+    std::vector<double> parts;
+    double last = 0;
+    for (const ClosestPoint& closest : closest_points(boundary.spline, row)) {
+        last = std::max(last, (closest.parameter[0] - knots.begin()) / knots.length());
+        parts.push_back(last);
+    }
+    parts.front() = 0;
+    parts.back() = 1;
+    return parts;
+}
+
+} // namespace
+
 Parameters parameters_for_boundaries(const Samples& samples, Parameters parameters,
                                      const std::vector<HeldBoundary>& boundaries) {
     if (samples.grid.size() != 2) return parameters;
     for (std::size_t axis = 0; axis < 2; ++axis) {
-        const Index m = samples.grid[axis];
-        std::vector<double> sum(static_cast<std::size_t>(m), 0);
+        std::vector<double> sum(static_cast<std::size_t>(samples.grid[axis]), 0);
         double count = 0;
         for (const HeldBoundary& boundary : boundaries) {
             if (static_cast<std::size_t>(boundary.axis) == axis) continue;
-            const Index other = samples.grid[1 - axis];
-            const Index fixed = boundary.end == AxisEnd::begin ? 0 : other - 1;
-            PointSet row(m, samples.dim());
-            for (Index j = 0; j < m; ++j)
-                std::ranges::copy(samples.points[axis == 0 ? j * other + fixed : fixed * m + j],
-                                  row[j].begin());
-            const std::vector<ClosestPoint> closest = closest_points(boundary.spline, row);
-            const KnotVector& knots = boundary.spline.axis(0);
-            double last = 0;
-            for (Index j = 0; j < m; ++j) {
-                const auto at = static_cast<std::size_t>(j);
-                last = std::max(last, (closest[at].parameter[0] - knots.begin()) / knots.length());
-                sum[at] += j == 0 ? 0.0 : j + 1 == m ? 1.0 : last;
-            }
+            const std::vector<double> parts = parts_along(boundary, samples);
+            for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += parts[j];
             ++count;
         }
         if (count == 0) continue;
@@ -257,13 +261,13 @@ double tangent_error(const Spline& spline, const Samples& samples, const Paramet
         std::vector<int> orders(static_cast<std::size_t>(spline.axis_count()), 0);
         orders[static_cast<std::size_t>(tangent.axis)] = 1;
         std::vector<double> got = spline(parameter_of(parameters, tangent.sample), orders);
-        const double wanted = length_of(tangent.value);
+        const double wanted = norm(tangent.value);
         const double factor = tangent.kind == TangentKind::derivative
                                   ? 1
                                   : dot(got, tangent.value) / (wanted * wanted);
         for (std::size_t d = 0; d < got.size(); ++d) got[d] -= factor * tangent.value[d];
-        const double error = factor > 0 && size > 0 ? length_of(got) / size
-                                                    : std::numeric_limits<double>::infinity();
+        const double error =
+            factor > 0 && size > 0 ? norm(got) / size : std::numeric_limits<double>::infinity();
         worst = std::max(worst, error);
     }
     return worst;

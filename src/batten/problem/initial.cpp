@@ -1,5 +1,6 @@
 #include <batten/problem/initial.hpp>
 
+#include <batten/core/grid_index.hpp>
 #include <batten/spline/spline.hpp>
 
 #include <algorithm>
@@ -41,30 +42,23 @@ Index nearest(const std::vector<double>& values, double t) {
 
 /// Gives control points without a sample of their own their nearest neighbour's, ring by ring along
 /// the axes.
-void fill_holes(PointSet& control, std::vector<double>& distances,
-                const std::vector<Index>& shape) {
+void fill_holes(PointSet& control, std::vector<double>& distances, const GridIndex& net) {
     constexpr double unset = std::numeric_limits<double>::infinity();
     for (bool holes = true; holes;) {
         holes = false;
         const std::vector<double> before = distances;
-        for (Index i = 0; i < control.size(); ++i) {
-            if (before[static_cast<std::size_t>(i)] != unset) continue;
+        net.for_each([&](const GridIndex::Place& place, Index i) {
+            if (before[static_cast<std::size_t>(i)] != unset) return;
             holes = true;
-            Index stride = 1;
-            Index rest = i;
-            for (std::size_t a = shape.size(); a-- > 0;) {
-                const Index at = rest % shape[a];
+            for (std::size_t a = net.axis_count(); a-- > 0;)
                 for (Index step : {-1, 1}) {
-                    if (at + step < 0 || at + step >= shape[a]) continue;
-                    const Index other = i + step * stride;
+                    if (place[a] + step < 0 || place[a] + step >= net.length(a)) continue;
+                    const Index other = i + step * net.stride(a);
                     if (before[static_cast<std::size_t>(other)] == unset) continue;
                     std::ranges::copy(control[other], control[i].begin());
                     distances[static_cast<std::size_t>(i)] = 0;
                 }
-                rest /= shape[a];
-                stride *= shape[a];
-            }
-        }
+        });
     }
 }
 
@@ -109,7 +103,7 @@ PointSet nearest_samples(const Samples& samples, const Parameters& parameters,
         closest = found.away;
         std::ranges::copy(samples.points[j], control[found.control].begin());
     }
-    fill_holes(control, distances, free_shape(axes));
+    fill_holes(control, distances, GridIndex(free_shape(axes)));
     return control;
 }
 
@@ -120,16 +114,13 @@ SampleGroups nearest_groups(const Parameters& parameters, const std::vector<Knot
     std::vector<Index> owner;
     for (Index j = 0; j < parameters.scattered.size(); ++j)
         owner.push_back(nearest_control(parameters.scattered[j], axes, greville).control);
-    Index controls = 1;
-    for (Index n : free_shape(axes)) controls *= n;
-    return {std::move(owner), controls};
+    return {std::move(owner), GridIndex(free_shape(axes)).size()};
 }
 
 PointSet initial_control(const Samples& samples, const Parameters& parameters,
                          const std::vector<KnotVector>& axes, const MethodOptions& options) {
-    const std::vector<Index> shape = free_shape(axes);
-    Index total = 1;
-    for (Index n : shape) total *= n;
+    const GridIndex net(free_shape(axes));
+    const Index total = net.size();
     if (options.initial == Initial::given) {
         if (options.control.size() != total || options.control.dim() != samples.dim())
             throw InvalidInput(fmt::format(
@@ -141,18 +132,13 @@ PointSet initial_control(const Samples& samples, const Parameters& parameters,
     if (options.initial == Initial::zero) return control;
     if (parameters.is_scattered())
         return nearest_samples(samples, parameters, axes, std::move(control));
-    const std::vector<Index> grid = samples.shape();
-    for (Index k = 0; k < total; ++k) {
-        Index rest = k;
-        Index sample = 0;
-        Index stride = 1;
-        for (std::size_t a = shape.size(); a-- > 0;) {
-            sample += start_sample(axes[a], parameters.axes[a], rest % shape[a]) * stride;
-            rest /= shape[a];
-            stride *= grid[a];
-        }
-        std::ranges::copy(samples.points[sample], control[k].begin());
-    }
+    const GridIndex grid(samples.shape());
+    net.for_each([&](const GridIndex::Place& place, Index k) {
+        GridIndex::Place sample{};
+        for (std::size_t a = 0; a < axes.size(); ++a)
+            sample[a] = start_sample(axes[a], parameters.axes[a], place[a]);
+        std::ranges::copy(samples.points[grid.at(sample)], control[k].begin());
+    });
     return control;
 }
 

@@ -143,7 +143,9 @@ CurveTask turned_task(const CurveTask& task, const Turned& turned, const Samples
     result.parameters =
         shape.parameters
             ? turned.parameters(task.parameters, task.parameters.front(), task.parameters.back())
-            : parametrize_sequence(samples.points, shape.parametrization, task.closure);
+            : parametrize_sequence(samples.points,
+                                   shape.parametrization.value_or(Parametrization::chord),
+                                   task.closure);
     for (Index corner : task.corners) result.corners.push_back(turned(corner));
     std::ranges::sort(result.corners);
     return result;

@@ -75,8 +75,8 @@ TEST(Verdict, says_what_is_handed_out) {
                   {.why = NotMet::limited, .allowed = 20, .control_points = 18, .deviation = 0.25}),
               "not met: 20 control points are allowed and do not suffice; the closest smooth fit "
               "found: 18 control points, largest deviation 0.25");
-    EXPECT_NE(near_interpolation_words(30, 40, 0).find("unknown"), std::string::npos);
-    EXPECT_EQ(near_interpolation_words(20, 40, 0), "");
+    EXPECT_NE(near_interpolation_words(30, 40, 0, 1).find("unknown"), std::string::npos);
+    EXPECT_EQ(near_interpolation_words(20, 40, 0, 1), "");
 }
 
 } // namespace
