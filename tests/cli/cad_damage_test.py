@@ -208,6 +208,9 @@ class CadDamage(unittest.TestCase):
             run.send_signal(number)
             self.assertEqual(run.communicate(timeout=GUARD)[1], "batten: interrupted; nothing was written\n")
             self.assertEqual(run.returncode, 130)
+            end = time.monotonic() + GUARD  # the system ends it once its parent has gone
+            while state(child) and time.monotonic() < end:
+                time.sleep(0.01)
             self.assertEqual(state(child), "")
 
 

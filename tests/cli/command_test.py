@@ -147,11 +147,11 @@ class Refusals(Command):
     def test_flags_that_say_nothing_are_refused(self):
         self.good("generate", "rose", "-o", "r.csv")
         self.good("fit", "r.csv", "-n", 9, "-q", "-o", "k.json")
-        for message, *words in (("--control-points and --knots FILE: the knots state the number of control points", "-n", 20, "--knots", "k.json"),
-                                ("--tolerance: knots are found by the fit, --knots says nothing", "-t", 1, "--knots", "uniform"),
-                                ("--max-control-points: it bounds a fit to a tolerance, --control-points states the size", "-n", 20, "--max-control-points", 5),
-                                ("--corners: they are for fits to a tolerance, not for a stated size", "-n", 20, "--corners", "3"),
-                                ("--moving: it is for --method pia", "-n", 20, "--moving", "3"),
+        for message, *words in (("control points and knots: the knots state the number of control points", "-n", 20, "--knots", "k.json"),
+                                ("a fit to a tolerance cannot take a rule for knots; direct, lspia, mlspia, ... can, without what else is asked", "-t", 1, "--knots", "uniform"),
+                                ("method direct cannot limit the number of control points of a tolerance; search can, without what else is asked", "-n", 20, "--max-control-points", 5),
+                                ("method direct cannot take corners; search can, without what else is asked", "-n", 20, "--corners", "3"),
+                                ("method mlspia cannot move only some control points; pia can", "-n", 20, "-m", "mlspia", "--moving", "3"),
                                 ("--smooth-order: it needs --smooth", "-n", 20, "--smooth-order", 3),
                                 ("--spacing: it is for --heights", "-n", 20, "--spacing", "2,2"),
                                 ("--interpolate all: a list like 0,20,40 or a file is needed", "-n", 20, "--interpolate", "all"),
@@ -232,8 +232,8 @@ class Refusals(Command):
         self.bad(2, "axis 0: pia needs as many control points as samples, got 8 and 30", "fit", "r.csv", "--method", "pia", "-n", 8)
         self.bad(2, "interpolated sample 30: the samples are 0 to 29", "fit", "r.csv", "-n", 8, "--interpolate", "0,30")
         self.bad(2, "interpolated sample 4 is given twice", "fit", "r.csv", "-n", 8, "--interpolate", "4,4")
-        self.bad(2, "method lspia cannot interpolate samples exactly; use direct or clspia", "fit", "r.csv", "-n", 8, "--method", "lspia", "--interpolate", "ends")
-        self.bad(2, "preserve: shape is kept for curves in the plane, not for a surface or volume in dimension 3",
+        self.bad(2, "method lspia cannot pass through samples exactly; direct, clspia, epia can", "fit", "r.csv", "-n", 8, "--method", "lspia", "--interpolate", "ends")
+        self.bad(2, "method direct cannot keep a shape of a grid; nothing can",
                  "fit", "p.csv", "--grid", "9x9", "-n", "5x5", "--preserve", "convexity")
         self.bad(2, "setting mu_1 = 0.1 of method clspia is outside ", "fit", "r.csv", "-n", 8, "--method", "clspia",
                  "--interpolate", "ends", "--set", "mu_1=0.1", prefix=True)

@@ -123,8 +123,10 @@ class Tolerance(unittest.TestCase):
                 continue
             self.assertIn(done.returncode, (0, 4), file.name)
             spline, summary = json.loads((self.folder / "o.json").read_text()), json.loads((self.folder / "s.json").read_text())
-            # the rounding of the control points alone, over a knot span of 1e-4, is 3e-12 of a derivative
-            self.assertLess(summary["tangent_error"], 1e-11, file.name)
+            # the rounding of the control points alone, over the knot span at an end
+            knots = np.array(spline["knots"][0])
+            span = min(knots[4] - knots[3], knots[-4] - knots[-5])
+            self.assertLess(summary["tangent_error"], 1e-12 + 1e-15 / span, file.name)
             self.assertLess(self.derivative(spline, 0)[0], 0, file.name)
             self.assertGreater(self.derivative(spline, 1)[0], 0, file.name)
             for end in (0, 1):
@@ -362,7 +364,7 @@ class Tolerance(unittest.TestCase):
         for message, *arguments in (
             ("--tolerance 0: must be positive", "--tolerance", 0),
             ("--tolerance and --control-points: one of them states the size; --max-control-points bounds a tolerance", "--tolerance", 1, "-n", 9),
-            ("tolerance and smoothing: one of them rules how close the spline is; state one", "--tolerance", 1, "--smooth", "auto"),
+            ("a fit to a tolerance cannot smooth; direct, lspia, mlspia, ... can, without what else is asked", "--tolerance", 1, "--smooth", "auto"),
             ("closed: continuity C3 at the seam is more than degree 3 has anywhere, C2", "--tolerance", 1, "--closed=C3"),
             ("boundary u0: only a grid's surface or volume has boundaries to hold", "--tolerance", 1, "--boundary", f"u0={self.folder / 'rose.json'}"),
             ("corner 900: the samples are 0 to 500", "--tolerance", 1, "--corners", "900"),

@@ -192,7 +192,7 @@ TEST(Constraints, that_cannot_hold_are_named) {
     EXPECT_EQ(refusal({0, 1, 2, 3, 4, 5, 6, 7}, 6, "direct"),
               "8 constraints on 6 control points: at most as many are possible");
     EXPECT_EQ(refusal({0, 59}, 10, "lspia"),
-              "method lspia cannot interpolate samples exactly; use direct or clspia");
+              "method lspia cannot pass through samples exactly; direct, clspia, epia can");
     EXPECT_EQ(
         refusal({0, 1, 2, 3, 4, 50}, 12, "direct"),
         "constraints contradict each other: sample 0, sample 1, sample 2, sample 3, sample 4");

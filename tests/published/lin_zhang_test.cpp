@@ -86,7 +86,8 @@ TEST(LinZhang, a_cloud_with_parameters_converges) {
         uv(i, 1) = q(i, 1) = unit(random);
         q(i, 2) = std::sin(4 * q(i, 0)) * q(i, 1);
     }
-    FitOptions options = epia(0, 0.6);
+    FitOptions options;
+    options.method.name = "epia";
     options.shape.control_points = {10, 9};
     options.shape.parameters = Parameters{{}, uv};
     options.stop = {.max_iterations = 3000, .relative_gradient = 1e-8};
@@ -102,6 +103,7 @@ TEST(LinZhang, refusals) {
         testing::message_of<InvalidInput>([&] { fit(rose, options); }),
         "epia: state where to stop: a deviation (--stop-deviation) or a number of control points");
     options.shape.control_points = {30};
+    options.method.settings.clear();
     options.shape.parameters = Parameters{{}, PointSet({0, 0, 1, 1}, 2)};
     Samples two;
     two.points = Points(PointSet({0, 0, 1, 1}, 2));

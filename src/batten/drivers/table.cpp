@@ -17,6 +17,7 @@ namespace {
 using enum Request;
 
 constexpr Requests space{size, knots, placement, parameters, closed}; ///< the spline space, stated
+constexpr Requests rules{placement, parameters}; ///< for what a cloud has in any case
 constexpr Requests least_squares_terms{weights, smoothing, outliers};
 constexpr Requests course{start, history, stop}; ///< of an iteration
 constexpr Requests curves{seam, shape};          ///< what only a curve has
@@ -45,21 +46,22 @@ std::vector<Driver> table() {
     const Requests interpolating = space | course | Requests{local};
     const Requests grown{size, history, stop, outliers};
     return {
-        with(method_entry("direct"), solved | curves, solved | boundary, solved, fit_least_squares),
+        with(method_entry("direct"), solved | curves, solved | boundary, solved - rules,
+             fit_least_squares),
         iteration("lspia"),
         iteration("mlspia"),
-        with(method_entry("clspia"), constrained | curves, constrained | boundary, constrained,
-             fit_least_squares),
+        with(method_entry("clspia"), constrained | curves, constrained | boundary,
+             constrained - rules, fit_least_squares),
         with(method_entry("pia"), interpolating | Requests{shape}, interpolating, std::nullopt,
              fit_pia),
         with(method_entry("epia"), grown | Requests{samples, shape, parameters},
-             grown | Requests{parameters}, grown | Requests{knots, placement, start}, fit_epia),
+             grown | Requests{parameters}, grown | Requests{knots, start}, fit_epia),
         iteration("cg"),
         iteration("chebyshev"),
         iteration("nesterov"),
         iteration("barzilai-borwein"),
         with(method_entry("search"), searched | held | curves | Requests{corners},
-             searched | held | boundary, searched | held, fit_by_search),
+             searched | held | boundary, (searched | held) - rules, fit_by_search),
     };
 }
 

@@ -136,10 +136,12 @@ void add_to_space(Request request, Ask& ask) {
         shape.control_points.clear();
         return;
     case Request::placement:
-        shape.placement = KnotPlacement::uniform;
+        shape.placement = shape.parameters ? KnotPlacement::data : KnotPlacement::uniform;
+        if (square) shape.parametrization = Parametrization::uniform; // else it may be singular
         return;
     case Request::parameters:
         shape.parameters = other_parameters(ask.samples);
+        shape.parametrization.reset();
         return;
     case Request::closed:
         shape.closures = {Closure::closed};
@@ -382,7 +384,8 @@ TEST(DriverTable, every_request_shows_in_the_answer_or_is_refused) {
         const FitResult without = fit(base.samples, base.options);
         for (std::size_t k = 0; k < request_count; ++k) {
             const auto request = static_cast<Request>(k);
-            if (kind == SampleKind::cloud && request == Request::parameters) continue;
+            if (kind == SampleKind::cloud && request == Request::parameters)
+                continue; // it has them
             const std::string where =
                 fmt::format("{} of a {}: {}", driver.name, to_string(kind), to_string(request));
             Ask ask = base;

@@ -189,6 +189,10 @@ TEST(Fit, refuses_what_breaks_a_rule) {
     options.shape.degree = {12};
     EXPECT_EQ(refusal(options), "axis 0: degree 12 is outside 1 to 9");
     options = size({6});
+    options.shape.knots = {{0, 0, 0, 0, 1, 1, 1, 1}};
+    EXPECT_EQ(refusal(options),
+              "control points and knots: the knots state the number of control points");
+    options = {};
     options.shape.knots = {{0.2, 0.2, 0.2, 0.2, 1, 1, 1, 1}};
     EXPECT_EQ(refusal(options), "axis 0: parameters [0, 1] are outside the knots' domain [0.2, 1]");
     options = size({6});

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 namespace batten {
 
@@ -129,7 +130,7 @@ void complete_size(Problem& problem) {
     if (options.smooth.wanted) {
         problem.axes.control_points = smoothing_size(problem.samples, problem.axes);
     } else if (open && options.stop.deviation > 0) {
-        options.tolerance.value = options.stop.deviation;
+        options.tolerance.value = std::exchange(options.stop.deviation, 0);
     } else if (open) {
         options.tolerance.value = problem.size > 0 ? problem.size / 1000 : 1e-3;
         problem.samples.notes.emplace_back(
@@ -152,8 +153,10 @@ Problem problem_of(const Samples& samples, const FitOptions& options) {
                     .size = diagonal(samples.points)};
     problem.stop_if_cancelled();
     ShapeOptions& shape = problem.options.shape;
-    if (problem.kind == SampleKind::cloud && !shape.parameters)
+    if (problem.kind == SampleKind::cloud && !shape.parameters) {
         shape.parameters = seen(samples, shape);
+        shape.projection.reset();
+    }
     const Index axes =
         problem.kind == SampleKind::cloud ? shape.parameters->axis_count() : samples.axis_count();
     problem.axes = plan_axes(shape, axes);

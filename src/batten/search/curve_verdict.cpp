@@ -1,7 +1,7 @@
 #include <batten/search/curve_verdict.hpp>
 
 #include <batten/measure/between_samples.hpp>
-#include <batten/measure/curve_deviation.hpp>
+#include <batten/measure/deviation.hpp>
 #include <batten/measure/inflections.hpp>
 #include <batten/search/search.hpp>
 #include <batten/shape/polygon.hpp>
@@ -59,9 +59,9 @@ FitReport inflections_of(const CurveTask& task, const CurveTrial& trial) {
 }
 
 double largest_deviation(const CurveTask& task, const CurveTrial& trial) {
-    const std::vector<double> off =
-        curve_deviations(spline_of(trial), task.samples.points, trial.parameters);
-    return *std::max_element(off.begin(), off.end());
+    const std::vector<double> off = deviations(spline_of(trial), task.samples,
+                                               {{trial.parameters}, {}}, DeviationKind::distance);
+    return *std::ranges::max_element(off);
 }
 
 std::string between_words(const BetweenSamples& between) {

@@ -79,10 +79,15 @@ PointSet solve_direct(const NormalSystem& system, const Constraints& given) {
         independent.directions().empty()
             ? independent
             : independent.with_lengths(best_lengths(independent, control, schur));
-    // the second pass takes up what rounding left of the constraints
-    for (int pass = 0; pass < 2; ++pass) {
+    // further passes take up what rounding left of the constraints, as long as that is less and less
+    constexpr int most_passes = 5;
+    double last = std::numeric_limits<double>::infinity();
+    for (int pass = 0; pass < most_passes; ++pass) {
         PointSet gap = constraints.apply(control);
         add_scaled(gap, -1.0, constraints.values());
+        const double missing = largest_length(gap);
+        if (pass > 1 && !(missing < last / 2)) break;
+        last = missing;
         const PointSet multipliers = schur.solve(gap);
         add_scaled(control, -1.0,
                    normal->solve(constraints.apply_transposed(multipliers, system.size())));
