@@ -28,8 +28,8 @@ constexpr Requests searched{tolerance, limit, parameters, weights, closed, outli
 Driver iteration(std::string_view name) {
     const MethodEntry& entry = method_entry(name);
     const Requests all = space | least_squares_terms | course;
-    return {entry.name, entry.description, entry.source, entry.settings, all | curves, all,
-            all,        fit_least_squares};
+    return {entry.name, entry.description, entry.source,     entry.settings, all | curves,
+            all,        all - rules,       fit_least_squares};
 }
 
 Driver with(const MethodEntry& entry, std::optional<Requests> sequence,

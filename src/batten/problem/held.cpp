@@ -52,8 +52,9 @@ void check_boundary(const HeldBoundary& boundary, const Samples& samples, Sample
                     const AxisPlan& plan) {
     const std::vector<int>& degree = plan.degree;
     const auto axes = static_cast<Index>(plan.count());
-    if (kind != SampleKind::grid)
-        throw InvalidInput("boundary: only a grid's surface or volume has boundaries to hold");
+    if (boundary.axis >= 0 && boundary.axis < 3 && kind != SampleKind::grid)
+        throw InvalidInput(name_of(boundary) +
+                           ": only a grid's surface or volume has boundaries to hold");
     if (boundary.axis < 0 || boundary.axis >= axes)
         throw InvalidInput(
             fmt::format("boundary of axis {}: the fit has {} axes", boundary.axis, axes));

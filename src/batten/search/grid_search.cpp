@@ -104,6 +104,9 @@ Fitted surface_within(const Problem& problem) {
                         .hold = options.hold,
                         .cancelled = options.cancelled};
     GridWithin found = searched(task);
+    if (found.spline.axis_count() == 0 && limit > 0)
+        throw InvalidInput(fmt::format(
+            "at most {} control points: these are fewer than what must hold takes", limit));
     if (found.spline.axis_count() == 0)
         throw SolverError(
             "no number of control points gives a solvable system: the grid's parameters coincide");

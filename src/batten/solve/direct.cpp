@@ -79,20 +79,7 @@ PointSet solve_direct(const NormalSystem& system, const Constraints& given) {
         independent.directions().empty()
             ? independent
             : independent.with_lengths(best_lengths(independent, control, schur));
-    // further passes take up what rounding left of the constraints, as long as that is less and less
-    constexpr int most_passes = 5;
-    double last = std::numeric_limits<double>::infinity();
-    for (int pass = 0; pass < most_passes; ++pass) {
-        PointSet gap = constraints.apply(control);
-        add_scaled(gap, -1.0, constraints.values());
-        const double missing = largest_length(gap);
-        if (pass > 1 && !(missing < last / 2)) break;
-        last = missing;
-        const PointSet multipliers = schur.solve(gap);
-        add_scaled(control, -1.0,
-                   normal->solve(constraints.apply_transposed(multipliers, system.size())));
-    }
-    return control;
+    return onto_constraints(std::move(control), constraints, *normal, schur);
 }
 
 Constraints with_best_lengths(const NormalSystem& system, const Constraints& given) {

@@ -128,6 +128,12 @@ class Response {
         return moves;
     }
 
+    /// Control points that meet the constraints but for rounding.
+    PointSet exact(PointSet control) const {
+        return schur_ ? onto_constraints(std::move(control), constraints_, *normal_, *schur_)
+                      : control;
+    }
+
   private:
     const NormalSystem& system_;
     const Constraints& constraints_;
@@ -212,7 +218,7 @@ PointSet solve_with_inflections(const NormalSystem& system, const Constraints& g
         polygon = with_signs(best, polygon, signs, watched, response, closed);
         if (inflection_count(polygon, closure) <= most_inflections) break;
     }
-    return polygon;
+    return response.exact(std::move(polygon));
 }
 
 } // namespace batten

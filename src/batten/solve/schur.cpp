@@ -1,6 +1,7 @@
 #include <batten/solve/schur.hpp>
 
 #include <Eigen/Dense>
+#include <limits>
 
 namespace batten {
 
@@ -36,6 +37,23 @@ ExtremeEigenvalues SchurComplement::eigenvalues() const {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix_->values,
                                                                 Eigen::EigenvaluesOnly);
     return {solver.eigenvalues().maxCoeff(), solver.eigenvalues().minCoeff()};
+}
+
+PointSet onto_constraints(PointSet control, const Constraints& constraints,
+                          const Factorization& normal, const SchurComplement& schur) {
+    constexpr int most_passes = 5; // each takes up what rounding left of the one before
+    double last = std::numeric_limits<double>::infinity();
+    for (int pass = 0; pass < most_passes; ++pass) {
+        PointSet gap = constraints.apply(control);
+        add_scaled(gap, -1.0, constraints.values());
+        const double missing = largest_length(gap);
+        if (pass > 1 && !(missing < last / 2)) break;
+        last = missing;
+        const PointSet multipliers = schur.solve(gap);
+        add_scaled(control, -1.0,
+                   normal.solve(constraints.apply_transposed(multipliers, control.size())));
+    }
+    return control;
 }
 
 } // namespace batten

@@ -23,4 +23,9 @@ class SchurComplement {
     std::unique_ptr<Matrix> matrix_;
 };
 
+/// The control points moved, as little as the normal equations weigh it, until what they lack of
+/// the constraints is rounding.
+PointSet onto_constraints(PointSet control, const Constraints& constraints,
+                          const Factorization& normal, const SchurComplement& schur);
+
 } // namespace batten
