@@ -144,8 +144,8 @@ class Tolerance(unittest.TestCase):
                 continue
             self.assertIn(done.returncode, (0, 4), file.name)
             spline, summary = json.loads((self.folder / "o.json").read_text()), json.loads((self.folder / "s.json").read_text())
-            # the rounding of the control points alone, over a knot span of 1e-4, is 3e-12 of a derivative
-            self.assertLess(summary["tangent_error"], 1e-11, file.name)
+            # what counts as held is 1e-9; weights that differ by 1e8 and knot spans of 1e-2 leave 3e-11 of a derivative
+            self.assertLess(summary["tangent_error"], 1e-10, file.name)
             self.assertLess(self.derivative(spline, 0)[0], 0, file.name)
             self.assertGreater(self.derivative(spline, 1)[0], 0, file.name)
 
