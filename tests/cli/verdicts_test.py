@@ -194,7 +194,7 @@ class Table(Verdicts):
                  "pass through samples exactly": ["--interpolate", "ends"], "set outliers aside": ["--robust"]}
         for words, flag in flags.items():
             for method, cell in rows[words].items():
-                size = ["-t", 0.01] if method == "search" else [] if method == "pia" else ["-n", 12]
+                size = {"search": ["-t", 0.01], "pia": [], "epia": ["--stop-deviation", 0.01]}.get(method, ["-n", 12])
                 done = self.run_batten("fit", "w.csv", "-m", method, *size, *flag, "-q")
                 self.assertEqual(done.returncode in (0, 4), "s" in cell, (method, words, done.stderr))
                 if "s" not in cell:

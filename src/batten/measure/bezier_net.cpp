@@ -68,6 +68,22 @@ PerAxis<double> extents(const BezierNet& net, Index dim) {
     return result;
 }
 
+double box_square(const BezierNet& net, Index dim) {
+    const Index n = net.coefficients();
+    double square = 0;
+    for (const double* value = net.values.data(); dim > 0; --dim, value += n) {
+        double low = value[0];
+        double high = value[0];
+        for (Index i = 1; i < n; ++i) {
+            low = value[i] < low ? value[i] : low;
+            high = value[i] > high ? value[i] : high;
+        }
+        const double gap = std::max({low, -high, 0.0});
+        square += gap * gap;
+    }
+    return square;
+}
+
 void collapse(BezierNet& net, Index dim, const Face& face) {
     const Index inner = net.stride(face.axis);
     const Index order = net.degrees[face.axis] + 1;

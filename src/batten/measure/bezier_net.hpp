@@ -34,6 +34,9 @@ struct BezierNet {
 /// Upper bounds of the net's extent along each axis: the degree times its longest control leg.
 PerAxis<double> extents(const BezierNet& net, Index dim);
 
+/// Lower bound of the squared distance from the origin: that of the control points' box.
+double box_square(const BezierNet& net, Index dim);
+
 /// Makes the net its own face.
 void collapse(BezierNet& net, Index dim, const Face& face);
 

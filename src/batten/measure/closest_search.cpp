@@ -114,6 +114,8 @@ void ClosestSearch::search_piece(Index piece) {
 /// face where that holds the minimum.
 ClosestSearch::Verdict ClosestSearch::judge(Index piece, BezierNet& net) {
     while (true) {
+        // of steep surfaces the box is the better bound, and cheap
+        if (box_square(net, dim_) >= enough_) return Verdict::settled;
         squares_.assign(net, dim_);
         improve(piece, net, squares_.corner(), squares_.least_corner());
         if (squares_.least() >= enough_ || net.coefficients() == 1) return Verdict::settled;
@@ -127,11 +129,12 @@ ClosestSearch::Verdict ClosestSearch::judge(Index piece, BezierNet& net) {
     return squares_.least() >= enough_ || tiny ? Verdict::settled : Verdict::open;
 }
 
+/// Descends where there is one minimum, or from a corner that is nearer than all before.
 ClosestSearch::Verdict ClosestSearch::descend_on(Index piece, const BezierNet& net) {
     const bool convex = squares_.is_convex();
+    if (!convex && squares_.least_corner() > best_square_) return Verdict::open;
     const bool holds_best = best_.piece == piece && net.contains(best_.local);
     const PerAxis<double> start = holds_best ? net.in_net(best_.local) : squares_.least_at();
-    if (!convex && !is_promising(net, start)) return Verdict::open;
     const Descent found =
         descend(net, pieces_.axis_count(), dim_, start, convex ? most_steps : few_steps);
     improve(piece, net, found.at, found.square);
@@ -140,10 +143,6 @@ ClosestSearch::Verdict ClosestSearch::descend_on(Index piece, const BezierNet& n
     const double slack = tolerance_ / 4;
     const bool ended = distance <= slack || found.gain <= slack * (2 * distance - slack);
     return ended ? Verdict::settled : Verdict::open;
-}
-
-bool ClosestSearch::is_promising(const BezierNet& net, const PerAxis<double>& place) const {
-    return descend(net, pieces_.axis_count(), dim_, place, 0).square < best_square_;
 }
 
 /// Puts the halves along the longest axis in the net's place, the more promising one last.

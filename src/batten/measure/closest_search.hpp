@@ -45,7 +45,6 @@ class ClosestSearch {
     void load(Index piece, BezierNet& net);
     Verdict judge(Index piece, BezierNet& net);
     Verdict descend_on(Index piece, const BezierNet& net);
-    bool is_promising(const BezierNet& net, const PerAxis<double>& place) const;
     void divide(BezierNet& net);
     void improve(Index piece, const BezierNet& net, const PerAxis<double>& at, double square);
 

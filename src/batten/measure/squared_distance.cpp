@@ -1,5 +1,7 @@
 #include <batten/measure/squared_distance.hpp>
 
+#include <batten/core/vector_clones.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,12 +22,20 @@ constexpr auto binomials = [] {
     return table;
 }();
 
-/// The products of the axes' binomials, last axis fastest.
+constexpr auto reciprocals = [] {
+    auto table = binomials;
+    for (std::size_t n = 0; n <= most_degree; ++n)
+        for (std::size_t k = 0; k <= n; ++k) table[n][k] = 1 / table[n][k];
+    return table;
+}();
+
+/// The products of the axes' binomials, or of their reciprocals, last axis fastest.
 template <class Use>
-void for_each_binomial(const PerAxis<int>& degrees, const Use& use) {
-    const auto& first = binomials[static_cast<std::size_t>(degrees[0])];
-    const auto& second = binomials[static_cast<std::size_t>(degrees[1])];
-    const auto& third = binomials[static_cast<std::size_t>(degrees[2])];
+void for_each_product(const decltype(binomials)& table, const PerAxis<int>& degrees,
+                      const Use& use) {
+    const auto& first = table[static_cast<std::size_t>(degrees[0])];
+    const auto& second = table[static_cast<std::size_t>(degrees[1])];
+    const auto& third = table[static_cast<std::size_t>(degrees[2])];
     Index k = 0;
     for (std::size_t i = 0; i <= static_cast<std::size_t>(degrees[0]); ++i)
         for (std::size_t j = 0; j <= static_cast<std::size_t>(degrees[1]); ++j)
@@ -33,25 +43,67 @@ void for_each_binomial(const PerAxis<int>& degrees, const Use& use) {
                 use(k++, first[i] * second[j] * third[l]);
 }
 
-/// Adds the square of a polynomial with coefficients (rows0 x rows1 x length) in powers.
+/// Coordinates' coefficients in powers: dim x (rows0 x rows1 x length).
+struct Factors {
+    const double* values;
+    Index dim;
+    Index rows0;
+    Index rows1;
+};
+
+/// Adds both products of two rows, summed over the coordinates, or the one of a row with itself.
 template <int length>
-void add_square(const double* in, Index rows0, Index rows1, double* out) {
-    constexpr Index wide = 2 * length - 1;
-    for (Index a = 0; a < rows0 * rows1; ++a)
-        for (Index b = a; b < rows0 * rows1; ++b) {
-            const double factor = a == b ? 1 : 2; // a times b, and b times a
-            double* row =
-                out + ((a / rows1 + b / rows1) * (2 * rows1 - 1) + a % rows1 + b % rows1) * wide;
-            for (Index i = 0; i < length; ++i) {
-                const double x = factor * in[a * length + i];
-                for (Index j = 0; j < length; ++j) row[i + j] += x * in[b * length + j];
-            }
-        }
+inline __attribute__((always_inline)) void add_product(const Factors& f, Index a, Index b,
+                                                       double* out) {
+    std::array<double, 2 * length - 1> sum{};
+    const Index plane = f.rows0 * f.rows1 * length;
+    for (Index d = 0; d < f.dim; ++d) {
+        const double* x = f.values + d * plane + a * length;
+        const double* y = f.values + d * plane + b * length;
+        for (std::size_t i = 0; i < length; ++i)
+            for (std::size_t j = 0; j < length; ++j) sum[i + j] += x[i] * y[j];
+    }
+    const double factor = a == b ? 1 : 2;
+    for (std::size_t k = 0; k < sum.size(); ++k) out[k] += factor * sum[k];
 }
 
-constexpr std::array add_square_of_length{
-    add_square<1>, add_square<2>, add_square<3>, add_square<4>, add_square<5>,
-    add_square<6>, add_square<7>, add_square<8>, add_square<9>, add_square<10>};
+/// Adds the square, (2 rows0 - 1) x (2 rows1 - 1) x (2 length - 1).
+template <int length>
+inline __attribute__((always_inline)) void add_square(const Factors& f, double* out) {
+    for (Index a0 = 0; a0 < f.rows0; ++a0)
+        for (Index a1 = 0; a1 < f.rows1; ++a1)
+            for (Index b0 = a0; b0 < f.rows0; ++b0)
+                for (Index b1 = b0 == a0 ? a1 : 0; b1 < f.rows1; ++b1)
+                    add_product<length>(f, a0 * f.rows1 + a1, b0 * f.rows1 + b1,
+                                        out + ((a0 + b0) * (2 * f.rows1 - 1) + a1 + b1) *
+                                                  (2 * length - 1));
+}
+
+BATTEN_VECTOR_CLONES
+void add_square_of(int length, const Factors& f, double* out) {
+    switch (length) {
+    case 1:
+        return add_square<1>(f, out);
+    case 2:
+        return add_square<2>(f, out);
+    case 3:
+        return add_square<3>(f, out);
+    case 4:
+        return add_square<4>(f, out);
+    case 5:
+        return add_square<5>(f, out);
+    case 6:
+        return add_square<6>(f, out);
+    case 7:
+        return add_square<7>(f, out);
+    case 8:
+        return add_square<8>(f, out);
+    case 9:
+        return add_square<9>(f, out);
+    default:
+        return add_square<10>(f, out);
+    }
+}
 
 } // namespace
 
@@ -96,16 +148,14 @@ void SquaredDistance::multiply(const BezierNet& net, Index dim) {
     for (std::size_t a = 0; a < 3; ++a) order_[a] = 2 * p[a] + 1;
     scaled_.resize(net.values.size());
     coefficients_.assign(static_cast<std::size_t>(order_[0] * order_[1] * order_[2]), 0);
-    for_each_binomial(p, [&](Index k, double factor) {
+    for_each_product(binomials, p, [&](Index k, double factor) {
         for (Index d = 0; d < dim; ++d)
             scaled_[static_cast<std::size_t>(d * n + k)] =
                 factor * net.values[static_cast<std::size_t>(d * n + k)];
     });
-    for (Index d = 0; d < dim; ++d)
-        add_square_of_length[static_cast<std::size_t>(p[2])](scaled_.data() + d * n, p[0] + 1,
-                                                             p[1] + 1, coefficients_.data());
-    for_each_binomial({2 * p[0], 2 * p[1], 2 * p[2]}, [&](Index k, double factor) {
-        coefficients_[static_cast<std::size_t>(k)] /= factor;
+    add_square_of(p[2] + 1, {scaled_.data(), dim, p[0] + 1, p[1] + 1}, coefficients_.data());
+    for_each_product(reciprocals, {2 * p[0], 2 * p[1], 2 * p[2]}, [&](Index k, double factor) {
+        coefficients_[static_cast<std::size_t>(k)] *= factor;
     });
 }
 

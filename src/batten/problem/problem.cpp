@@ -28,6 +28,12 @@ void check_numbers(const FitOptions& options) {
         throw InvalidInput(fmt::format("frames: {} is negative", options.most_frames));
 }
 
+void check_corners(const std::vector<Index>& corners, Index samples) {
+    for (Index i : corners)
+        if (i < 0 || i >= samples)
+            throw InvalidInput(fmt::format("corner {}: the samples are 0 to {}", i, samples - 1));
+}
+
 /// Along an axis of a sequence or grid there are no more control points than samples.
 void check_counts(const Problem& problem) {
     if (problem.kind == SampleKind::cloud) return;
@@ -131,6 +137,8 @@ void complete_size(Problem& problem) {
         problem.axes.control_points = smoothing_size(problem.samples, problem.axes);
     } else if (open && options.stop.deviation > 0) {
         options.tolerance.value = std::exchange(options.stop.deviation, 0);
+        if (options.stop.relative_gradient == 0)
+            options.stop.relative_gradient = StopRule{}.relative_gradient;
     } else if (open) {
         options.tolerance.value = problem.size > 0 ? problem.size / 1000 : 1e-3;
         problem.samples.notes.emplace_back(
@@ -164,6 +172,7 @@ Problem problem_of(const Samples& samples, const FitOptions& options) {
     check_net(problem);
     check_seam(options, problem.axes);
     check_smoothing(options.smooth, problem.axes);
+    check_corners(options.tolerance.corner_samples, samples.size());
     check_held(options.hold, problem.samples, problem.kind, problem.axes);
     complete_size(problem);
     problem.parameters = chosen_parameters(problem);

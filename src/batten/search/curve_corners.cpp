@@ -40,9 +40,6 @@ std::vector<Index> checked_corners(std::vector<Index> corners, const CurveTask& 
     const bool closed = task.closure == Closure::closed;
     std::ranges::sort(corners);
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-    for (Index i : corners)
-        if (i < 0 || i >= m)
-            throw InvalidInput(fmt::format("corner {}: the samples are 0 to {}", i, m - 1));
     if (!closed) // the ends are free to have any direction already
         std::erase_if(corners, [&](Index i) { return i == 0 || i == m - 1; });
     const std::vector<Index> spaced = spaced_corners(corners, task);
