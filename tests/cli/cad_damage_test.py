@@ -14,9 +14,9 @@ import unittest
 import numpy as np
 from scipy.interpolate import BSpline
 
-BATTEN = os.environ["BATTEN"]
+from judge import BATTEN, GUARD
+
 CASES = 40  # of each file and kind of damage
-GUARD = 120  # seconds after which a run counts as hanging: its processor time is limited to a twentieth
 RATIONAL = re.compile(r"the (curve|surface) is rational")
 
 

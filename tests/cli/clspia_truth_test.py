@@ -1,6 +1,5 @@
 """CLSPIA is converged only when its samples are hit and it is the optimum: judged by a dense solve of the saddle point in NumPy."""
 import json
-import os
 import pathlib
 import subprocess
 import tempfile
@@ -9,7 +8,8 @@ import unittest
 import numpy as np
 from scipy.interpolate import BSpline
 
-BATTEN = os.environ["BATTEN"]
+from judge import BATTEN, GUARD
+
 COUNT = 20
 HELD = [0, 60, 115, 199]
 EXACT = 1e-9  # part of the data's size
@@ -30,7 +30,7 @@ class ClspiaTruth(unittest.TestCase):
         np.savetxt(self.folder / "p.csv", data, delimiter=",", fmt="%.17g")
         np.savetxt(self.folder / "t.txt", self.t, fmt="%.17g")
         done = subprocess.run([BATTEN, "fit", "p.csv", "-n", str(COUNT), "-m", "clspia", "--parameters", "t.txt", "--interpolate", ",".join(map(str, HELD)), "-q",
-                               "-o", "o.json", "--summary", "s.json", *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=120)
+                               "-o", "o.json", "--summary", "s.json", *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
         self.assertIn(done.returncode, (0, 4), done.stderr)
         spline, summary = json.loads((self.folder / "o.json").read_text()), json.loads((self.folder / "s.json").read_text())
         matrix = BSpline.design_matrix(self.t, np.array(spline["knots"][0]), 3).toarray()

@@ -12,7 +12,8 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.optimize import least_squares, minimize, minimize_scalar
 
-BATTEN = os.environ["BATTEN"]
+from judge import BATTEN, GUARD
+
 HARD = pathlib.Path(os.environ["BATTEN_ROOT"]).parent / "shared" / "data" / "hard"
 
 
@@ -108,7 +109,7 @@ class Compare(unittest.TestCase):
         self._folder.cleanup()
 
     def run_batten(self, *arguments):
-        done = subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        done = subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 

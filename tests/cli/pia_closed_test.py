@@ -1,6 +1,5 @@
 """PIA on closed axes: control point i follows the sample at the peak of its B-spline; rates are those of NumPy's eigenvalues, and above 1 refused."""
 import json
-import os
 import pathlib
 import subprocess
 import tempfile
@@ -9,7 +8,7 @@ import unittest
 import numpy as np
 from scipy.interpolate import BSpline
 
-BATTEN = os.environ["BATTEN"]
+from judge import BATTEN, GUARD
 
 
 def basis(knots, degree, t, closed):
@@ -51,7 +50,7 @@ class ClosedPia(unittest.TestCase):
         self._folder.cleanup()
 
     def run_batten(self, *arguments):
-        return subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        return subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
 
     def parameters(self, count, spread, closed):
         gaps = np.exp(spread * self.rng.uniform(-1, 1, count))

@@ -1,6 +1,5 @@
 """Every method's own settings: what is given is taken as it is, or refused with the range; judged by NumPy from the collocation matrix."""
 import json
-import os
 import pathlib
 import subprocess
 import tempfile
@@ -9,13 +8,14 @@ import unittest
 import numpy as np
 from scipy.interpolate import BSpline
 
-BATTEN = os.environ["BATTEN"]
+from judge import BATTEN, GUARD
+
 COUNT = 18
 HELD = "0,40,119"
 
 
 def run(folder, *arguments):
-    return subprocess.run([BATTEN, *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=120)
+    return subprocess.run([BATTEN, *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=GUARD)
 
 
 class Settings(unittest.TestCase):

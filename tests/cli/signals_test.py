@@ -11,8 +11,8 @@ import unittest
 
 import numpy as np
 
-BATTEN = os.environ["BATTEN"]
-GUARD = 60   # seconds against hangs
+from judge import BATTEN, GUARD
+
 SOON = 1.0   # seconds that an end may take, of the processor's time and of waiting for a busy machine left out
 ENDINGS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 NOTHING = b"batten: interrupted; nothing was written\n"

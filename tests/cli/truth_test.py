@@ -10,7 +10,8 @@ import unittest
 import numpy as np
 from scipy.interpolate import BSpline
 
-BATTEN = os.environ["BATTEN"]
+from judge import BATTEN, GUARD, shared
+
 AIRFOILS = pathlib.Path(os.environ["BATTEN_ROOT"]).parent / "shared" / "data" / "airfoils"
 # thin sections of few samples, on which searches at a tight tolerance go astray, and some ordinary ones
 SECTIONS = ("bambino6", "goe165", "goe319", "clarkw", "dormoy", "naca651212", "raf33", "goe797", "e193gu", "naca2410")
@@ -61,7 +62,7 @@ class Truth(unittest.TestCase):
             np.save(self.folder / "p.npy", np.ascontiguousarray(points))
             points = self.folder / "p.npy"
         done = subprocess.run([BATTEN, "fit", points, *map(str, arguments), "-q", "-o", "o.json", "--summary", "s.json"], cwd=self.folder,
-                              capture_output=True, text=True, timeout=300)
+                              capture_output=True, text=True, timeout=GUARD)
         self.assertIn(done.returncode, (0, 4), done.stderr)
         return json.loads((self.folder / "o.json").read_text()), json.loads((self.folder / "s.json").read_text()), done.returncode
 
@@ -84,8 +85,7 @@ class Truth(unittest.TestCase):
         self.assertGreater((points.max(axis=0) + room - curve).min(), 0)
 
     def test_the_closest_tame_curve_is_handed_out(self):
-        if not AIRFOILS.exists():
-            self.skipTest("shared data absent: airfoils")
+        shared(self, "airfoils")
         for name in SECTIONS:
             points = coordinates(AIRFOILS / f"{name}.dat")
             for form in FORMS:
