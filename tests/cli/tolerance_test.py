@@ -378,7 +378,7 @@ class Tolerance(unittest.TestCase):
             done = subprocess.run([BATTEN, "fit", path, *map(str, arguments)], capture_output=True, text=True)
             self.assertEqual((done.returncode, done.stderr), (2, f"batten: {message}\n"))
         for points, message in ((np.repeat(np.array([[0.0, 0], [1, 0], [1, 1]]), 4, axis=0), "axis 0: degree 3 needs at least 4 samples at different places, got 3"),
-                                (np.zeros((1, 2)), "axis 0: degree 3 needs at least 4 samples, got 1"),
+                                (np.zeros((1, 2)), "axis 0: 1 sample, at least 2 are needed"),
                                 (np.zeros((20, 2)), "axis 0: all points are identical; a curve through them has no length")):
             np.savetxt(self.folder / "d.csv", points, delimiter=",")
             done = subprocess.run([BATTEN, "fit", self.folder / "d.csv", "--tolerance", "1"], capture_output=True, text=True)
