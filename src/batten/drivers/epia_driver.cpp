@@ -110,9 +110,10 @@ class Incremental {
         for (Index round = 0; round < settings_.rounds && split_invalid(); ++round) {
         }
         PointSet control = initial_points();
-        check_limit();
         Spline spline = Spline::from_free(knots(), control);
-        report_.notes.push_back(fmt::format("epia started with {} control points", control.size()));
+        report_.notes.push_back(
+            fmt::format("epia started with {} control points{}", control.size(),
+                        full() ? ", as many as stated or more: none is added" : ""));
         while (true) {
             const DataSide data(spline.axes(), problem_.samples, problem_.parameters, groups());
             const Run run = one_run(data, spline.free_control_points());
@@ -191,17 +192,6 @@ class Incremental {
         Index n = 1;
         for (const EpiaAxis& axis : axes_) n *= static_cast<Index>(axis.controls().size());
         return n;
-    }
-
-    /// Throws InvalidInput when there are more than the stated number from the start.
-    void check_limit() const {
-        const std::vector<Index>& limit = problem_.axes.control_points;
-        for (std::size_t k = 0; k < limit.size(); ++k)
-            if (const auto n = static_cast<Index>(axes_[k].controls().size()); n > limit[k])
-                throw InvalidInput(fmt::format(
-                    "axis {}: epia starts with {} control points, at the dominant samples; {} "
-                    "allows too few",
-                    k, n, limit[k]));
     }
 
     /// Whether the stated number of control points, if any, forbids more.

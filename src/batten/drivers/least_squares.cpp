@@ -105,7 +105,9 @@ Course answered(const Equations& equations, const Problem& problem, std::string_
     if (method != "direct") return iterated_from_start(equations, problem, method);
     if (problem.options.hold.preserve != Preserve::nothing)
         return solved_in_shape(equations, problem);
-    return {solve_direct(*equations.system, equations.held), {}};
+    Course course{solve_direct(*equations.system, equations.held), {}};
+    course.report.gradient_norm = frobenius_norm(equations.system->gradient(course.control));
+    return course;
 }
 
 } // namespace

@@ -22,7 +22,7 @@ constexpr Requests least_squares_terms{weights, smoothing, outliers};
 constexpr Requests course{start, history, stop}; ///< of an iteration
 constexpr Requests curves{seam, shape};          ///< what only a curve has
 constexpr Requests held{samples, tangents};
-constexpr Requests searched{tolerance, limit, parameters, weights, closed, outliers};
+constexpr Requests searched{tolerance, limit, parameters, weights, closed, outliers, history};
 
 /// The columns of the iterations on the normal equations.
 Driver iteration(std::string_view name) {
@@ -41,8 +41,8 @@ Driver with(const MethodEntry& entry, std::optional<Requests> sequence,
 
 std::vector<Driver> table() {
     const Requests boundary{boundaries};
-    const Requests solved = space | least_squares_terms | held | Requests{stop};
-    const Requests constrained = solved | course;
+    // a solution depends on no start, is beyond every stop, and its course is one step
+    const Requests solved = space | least_squares_terms | held | course;
     const Requests interpolating = space | course | Requests{local};
     const Requests grown{size, history, stop, outliers};
     return {
@@ -50,8 +50,8 @@ std::vector<Driver> table() {
              fit_least_squares),
         iteration("lspia"),
         iteration("mlspia"),
-        with(method_entry("clspia"), constrained | curves, constrained | boundary,
-             constrained - rules, fit_least_squares),
+        with(method_entry("clspia"), solved | curves, solved | boundary, solved - rules,
+             fit_least_squares),
         with(method_entry("pia"), interpolating | Requests{shape}, interpolating, std::nullopt,
              fit_pia),
         with(method_entry("epia"), grown | Requests{samples, shape, parameters},

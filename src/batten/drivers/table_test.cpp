@@ -278,8 +278,9 @@ bool shows(Request request, const Ask& ask, const FitResult& result) {
         const std::vector<Index> free = free_shape(spline.axes());
         if (report.method != "epia" || result.parameters.is_scattered())
             return free == ask.options.shape.control_points;
-        for (std::size_t k = 0; k < free.size(); ++k)
-            if (free[k] > ask.options.shape.control_points[k] + 1) return false;
+        for (std::size_t k = 0; k < free.size(); ++k) // its start may have more: then none is added
+            if (free[k] > ask.options.shape.control_points[k] + 1 && report.notes.size() != 1)
+                return false;
         return true;
     }
     case Request::knots:
@@ -354,6 +355,8 @@ bool must_change(Request request, const Driver& driver) {
     case Request::outliers:
     case Request::shape:
         return false;
+    case Request::start:
+        return driver.name != "direct";
     case Request::stop:
         return driver.name != "direct" && driver.name != "cg";
     case Request::size:

@@ -123,6 +123,9 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     report.tangent_error = tangent_error(spline, samples, fitted.parameters, hold.tangents);
     report.boundaries = static_cast<Index>(hold.boundaries.size());
     report.boundary_error = boundary_error(spline, hold.boundaries);
+    if (problem.options.keep_history && report.history.empty()) // nothing came before the answer
+        report.history.push_back({0, report.gradient_norm, 0, report.deviation.maximum,
+                                  report.constraint_error * report.constraint_error});
     report.goals = judged(report, problem, away);
     const Termination before = report.termination;
     report.termination = ending(report);
