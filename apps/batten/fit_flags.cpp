@@ -30,9 +30,9 @@ void add_shape_flags(CLI::App& fit, FitFlags& flags) {
                  "Closed curve, at its seam as smooth as elsewhere or --closed=C0, C1, ...; for a "
                  "grid the closed axes, as --closed=0 or --closed=0,1")
         ->group("Shape");
-    fit.add_option("--parametrize", flags.parametrize, "chord, centripetal or uniform")
-        ->group("Shape")
-        ->capture_default_str();
+    fit.add_option("--parametrize", flags.parametrize,
+                   "chord (which holds without it for points in order), centripetal or uniform")
+        ->group("Shape");
     fit.add_option("--parameters", flags.parameters,
                    "File of parameters, one per sample; for a grid one file per axis")
         ->group("Shape");
@@ -40,10 +40,10 @@ void add_shape_flags(CLI::App& fit, FitFlags& flags) {
                    "A cloud's parameters: its coordinates xy, xz or yz, or in its best plane")
         ->group("Shape");
     fit.add_option("--knots", flags.knots,
-                   "data (NURBS Book 9.69), uniform, a text file of one axis's knots, or a spline "
-                   ".json whose knots to take")
-        ->group("Shape")
-        ->capture_default_str();
+                   "data (NURBS Book 9.69, as for a named method), uniform, a text file of one "
+                   "axis's knots, or a spline .json whose knots to take; without it as data, from "
+                   "both ends alike")
+        ->group("Shape");
     fit.add_option("--grid", flags.grid, "Grid shape of the points, last axis fastest: 81x81")
         ->group("Points");
     fit.add_flag("--heights", flags.heights, "The file is a table of heights over a regular grid")
@@ -56,8 +56,7 @@ void add_shape_flags(CLI::App& fit, FitFlags& flags) {
 }
 
 void add_method_flags(CLI::App& fit, FitFlags& flags) {
-    fit.add_option("--method,-m", flags.method,
-                   "auto, direct, or an iteration: see `batten methods`")
+    fit.add_option("--method,-m", flags.method, "auto, or one of `batten methods`")
         ->group("Method")
         ->capture_default_str();
     fit.add_option("--initial", flags.initial,

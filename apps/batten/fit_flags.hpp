@@ -24,9 +24,9 @@ struct FitFlags {
     std::string control_points;
     std::vector<int> degree{3};
     std::string closed;
-    std::string parametrize = "chord";
+    std::string parametrize;
     std::vector<std::string> parameters;
-    std::string knots = "data";
+    std::string knots;
     std::string method = "auto";
     std::string initial = "data";
     std::vector<std::string> set;

@@ -107,9 +107,9 @@ ShapeOptions shape_options(const FitFlags& flags, const CLI::App& fit, const Sam
             static_cast<Projection>(parse_choice("--project", flags.project, projections));
     if (flags.knots == "uniform")
         shape.placement = KnotPlacement::uniform;
-    else if (fit.count("--knots") > 0 && flags.knots == "data")
+    else if (flags.knots == "data")
         shape.placement = KnotPlacement::data;
-    else if (fit.count("--knots") > 0)
+    else if (!flags.knots.empty())
         shape.knots = given_knots(flags.knots);
     return shape;
 }

@@ -99,6 +99,16 @@ class Truth(unittest.TestCase):
                         self.assertLessEqual(summary["max_deviation"], 2 * max([tolerance, *reached[-1:]]))
                         reached.append(summary["max_deviation"])
 
+    def test_where_every_thin_curve_is_wild_a_calmer_one_is_handed_out(self):
+        t = np.linspace(0, 1, 12)
+        points = np.c_[t, 0.2 * np.abs((4 * t) % 1 - 0.5)]
+        for seam, more in ((1, []), (1, ["--tolerance", 1e-4]), (2, []), (0, [])):
+            with self.subTest(seam=seam, more=more):
+                spline, summary, status = self.fit(points, "--degree", 5, f"--closed=C{seam}", *more)
+                curve = dense(spline)
+                self.assertIn(status, (0, 4))
+                self.assertLess(np.abs(curve - points.mean(axis=0)).max(), 2 * np.ptp(points, axis=0).max())
+
     def test_noise_is_known_from_an_adequate_fit_or_not_at_all(self):
         rng = np.random.default_rng(5)
         for count, noise in ((200, 0.02), (400, 0.001), (3000, 0.01)):

@@ -7,6 +7,7 @@
 #include <batten/search/search.hpp>
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -24,19 +25,17 @@ constexpr Requests curves{seam, shape};          ///< what only a curve has
 constexpr Requests held{samples, tangents};
 constexpr Requests searched{tolerance, limit, parameters, weights, closed, outliers, history};
 
-/// The columns of the iterations on the normal equations.
-Driver iteration(std::string_view name) {
-    const MethodEntry& entry = method_entry(name);
-    const Requests all = space | least_squares_terms | course;
-    return {entry.name, entry.description, entry.source,     entry.settings, all | curves,
-            all,        all - rules,       fit_least_squares};
-}
-
-Driver with(const MethodEntry& entry, std::optional<Requests> sequence,
-            std::optional<Requests> grid, std::optional<Requests> cloud,
-            Fitted (*fit)(const Problem&, std::string_view)) {
+Driver driver_of(const MethodEntry& entry, std::optional<Requests> sequence,
+                 std::optional<Requests> grid, std::optional<Requests> cloud,
+                 Fitted (*fit)(const Problem&, std::string_view)) {
     return {entry.name, entry.description, entry.source, entry.settings, sequence, grid, cloud,
             fit};
+}
+
+/// The columns of an iteration on the normal equations.
+Driver iteration(std::string_view name) {
+    const Requests all = space | least_squares_terms | course;
+    return driver_of(method_entry(name), all | curves, all, all - rules, fit_least_squares);
 }
 
 std::vector<Driver> table() {
@@ -46,22 +45,22 @@ std::vector<Driver> table() {
     const Requests interpolating = space | course | Requests{local};
     const Requests grown{size, history, stop, outliers};
     return {
-        with(method_entry("direct"), solved | curves, solved | boundary, solved - rules,
-             fit_least_squares),
+        driver_of(method_entry("direct"), solved | curves, solved | boundary, solved - rules,
+                  fit_least_squares),
         iteration("lspia"),
         iteration("mlspia"),
-        with(method_entry("clspia"), solved | curves, solved | boundary, solved - rules,
-             fit_least_squares),
-        with(method_entry("pia"), interpolating | Requests{shape}, interpolating, std::nullopt,
-             fit_pia),
-        with(method_entry("epia"), grown | Requests{samples, shape, parameters},
-             grown | Requests{parameters}, grown | Requests{knots, start}, fit_epia),
+        driver_of(method_entry("clspia"), solved | curves, solved | boundary, solved - rules,
+                  fit_least_squares),
+        driver_of(method_entry("pia"), interpolating | Requests{shape}, interpolating, std::nullopt,
+                  fit_pia),
+        driver_of(method_entry("epia"), grown | Requests{samples, shape, parameters},
+                  grown | Requests{parameters}, grown | Requests{knots, start}, fit_epia),
         iteration("cg"),
         iteration("chebyshev"),
         iteration("nesterov"),
         iteration("barzilai-borwein"),
-        with(method_entry("search"), searched | held | curves | Requests{corners},
-             searched | held | boundary, (searched | held) - rules, fit_by_search),
+        driver_of(method_entry("search"), searched | held | curves | Requests{corners},
+                  searched | held | boundary, (searched | held) - rules, fit_by_search),
     };
 }
 
@@ -73,7 +72,7 @@ std::string some(const std::vector<std::string_view>& names) {
                        names.size() > few ? ", ..." : "");
 }
 
-/// Names of the drivers that take all that is asked, or else of those that take one request of it.
+/// Names of the drivers that take all that is asked.
 std::vector<std::string_view> able(SampleKind kind, Requests asked) {
     std::vector<std::string_view> names;
     for (const Driver& other : drivers())
@@ -127,9 +126,12 @@ std::string driver_table() {
     constexpr std::array kinds{SampleKind::sequence, SampleKind::grid, SampleKind::cloud};
     std::string text = fmt::format("| {:<50} |", "");
     std::string rule = fmt::format("|{:-<52}|", "");
+    const auto width = [&](const Driver& driver) {
+        return std::max(driver.name.size(), kinds.size());
+    };
     for (const Driver& driver : drivers()) {
-        text += fmt::format(" {} |", driver.name);
-        rule += fmt::format("{:-<{}}|", "", driver.name.size() + 2);
+        text += fmt::format(" {:<{}} |", driver.name, width(driver));
+        rule += fmt::format("{:-<{}}|", "", width(driver) + 2);
     }
     text += "\n" + rule + "\n";
     const auto row = [&](std::string_view words, auto letter) {
@@ -139,7 +141,7 @@ std::string driver_table() {
             for (SampleKind kind : kinds)
                 if (driver.takes(kind) && letter(*driver.takes(kind)))
                     letters += to_string(kind)[0];
-            text += fmt::format(" {:<{}} |", letters.empty() ? "-" : letters, driver.name.size());
+            text += fmt::format(" {:<{}} |", letters.empty() ? "-" : letters, width(driver));
         }
         text += "\n";
     };

@@ -115,7 +115,8 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     if (problem.tolerance.empty()) note_duplicates(fitted.parameters, notes);
     report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
     const std::vector<double> away =
-        deviations(spline, samples, fitted.parameters, fitted.judged_by);
+        fitted.deviations.empty() ? deviations(spline, samples, fitted.parameters, fitted.judged_by)
+                                  : std::move(fitted.deviations);
     report.deviation = summarise(away, fitted.judged_by);
     report.interpolated = static_cast<Index>(hold.interpolate.size());
     report.constraint_error = interpolation_error(spline, samples, fitted.parameters, hold);

@@ -204,6 +204,20 @@ TEST(Fit, refuses_what_breaks_a_rule) {
     EXPECT_EQ(message_of<InvalidInput>([] { fit(sequence(PointSet(30, 2)), size({6})); }),
               "axis 0: all points are identical; a curve through them has no length");
     options = size({6});
+    options.shape.seam_continuity = -5;
+    EXPECT_EQ(refusal(options), "closed: continuity C-5 at the seam: C0, C1, ... or -1 for as "
+                                "smooth as elsewhere");
+    options = size({6});
+    options.smooth.lambda = 1;
+    EXPECT_EQ(refusal(options), "smoothing: a factor is given, but smoothing is not wanted");
+    options = size({6});
+    options.method.control = PointSet(6, 2);
+    EXPECT_EQ(refusal(options), "initial: control points are given, but the start is another");
+    options = {};
+    options.tolerance.corner_samples = {5};
+    EXPECT_EQ(refusal(options),
+              "corners: samples are given, but the corners are not the given ones");
+    options = size({6});
     options.cancelled = [] { return true; };
     EXPECT_EQ(message_of<Cancelled>([&] { fit(rose, options); }), "the fit was cancelled");
 }

@@ -18,7 +18,7 @@ struct MethodEntry {
     std::span<const MethodSetting> settings;
 };
 
-/// Every method of fitting with a fixed number of control points, `auto` and `direct` included.
+/// Everything that can be asked for by name, with its settings.
 std::span<const MethodEntry> methods();
 
 /// The entry of a method; throws InvalidInput for an unknown name (the nearest is suggested).

@@ -39,7 +39,7 @@ struct ShapeOptions {
 enum class Initial {
     data,  ///< samples picked evenly by index [HuangWang2020, eq. 38]
     zero,  ///< all control points zero
-    given, ///< FitOptions' own
+    given, ///< MethodOptions::control
 };
 
 struct MethodOptions {

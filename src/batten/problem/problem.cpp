@@ -28,6 +28,21 @@ void check_numbers(const FitOptions& options) {
         throw InvalidInput(fmt::format("frames: {} is negative", options.most_frames));
 }
 
+/// What is given for an option that is off would be ignored.
+void check_asked_for(const FitOptions& options) {
+    const int seam = options.shape.seam_continuity;
+    if (seam < -1)
+        throw InvalidInput(fmt::format("closed: continuity C{} at the seam: C0, C1, ... or -1 for "
+                                       "as smooth as elsewhere",
+                                       seam));
+    if (options.smooth.lambda != 0 && !options.smooth.wanted)
+        throw InvalidInput("smoothing: a factor is given, but smoothing is not wanted");
+    if (options.method.control.size() > 0 && options.method.initial != Initial::given)
+        throw InvalidInput("initial: control points are given, but the start is another");
+    if (!options.tolerance.corner_samples.empty() && options.tolerance.corners != Corners::given)
+        throw InvalidInput("corners: samples are given, but the corners are not the given ones");
+}
+
 void check_corners(const std::vector<Index>& corners, Index samples) {
     for (Index i : corners)
         if (i < 0 || i >= samples)
@@ -155,6 +170,7 @@ void Problem::stop_if_cancelled() const {
 Problem problem_of(const Samples& samples, const FitOptions& options) {
     check(samples);
     check_numbers(options);
+    check_asked_for(options);
     Problem problem{.samples = samples,
                     .kind = kind_of(samples, options.shape),
                     .options = options,

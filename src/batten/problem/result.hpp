@@ -19,6 +19,8 @@ struct Fitted {
     FitReport report{};
     /// How the driver means samples to be close.
     DeviationKind judged_by = DeviationKind::parametric;
+    /// One per sample, of that kind, where the driver has measured them; else empty.
+    std::vector<double> deviations{};
 };
 
 } // namespace batten

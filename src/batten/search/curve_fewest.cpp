@@ -138,6 +138,33 @@ CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index
     return found;
 }
 
+namespace {
+
+/// Where every curve so far is too wild to be handed out: the closest on the same knots with as
+/// little roughness counted as makes it acceptable.
+void see_calmer(const CurveTask& task, const KnotVector& knots, ClosestSeen& closest) {
+    constexpr double least = 1e-6;
+    constexpr double most = 1e12;
+    constexpr int rounds = 8;
+    const double tolerance = tightest(task);
+    const double shown = std::max(shown_roughness(task), tolerance * tolerance);
+    for (double part = least; part < most && !closest.trial(); part *= 4) {
+        CurveTask calmer = task;
+        calmer.roughness = part * tolerance * tolerance / shown;
+        const auto m = static_cast<std::size_t>(task.samples.size());
+        CurveTrial trial{.knots = knots,
+                         .parameters = task.parameters,
+                         .weights = first_weights(task),
+                         .control = {},
+                         .ratio = std::vector<double>(m, 0),
+                         .conflict = {}};
+        settle(calmer, trial, rounds, KnotShift::none);
+        closest.see(task, trial);
+    }
+}
+
+} // namespace
+
 CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options, Index most,
                           const CurveWithin& found, double reached) {
     CurveWithin result = found;
@@ -159,6 +186,8 @@ CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options
         if (again.met) loosest = rescaled(again.trial, factor);
         (again.met ? met : missed) = power;
     }
+    if (!closest.trial() && !acceptable(task, loosest) && !found.trial.control.empty())
+        see_calmer(task, found.trial.knots, closest);
     result.trial = closest.trial().value_or(loosest);
     result.met = closest.worst() <= 1;
     result.stages.emplace_back("closest", result.trial.knots.free_count());

@@ -1,4 +1,5 @@
 #include <batten/core/stopwatch.hpp>
+#include <batten/measure/deviation.hpp>
 #include <batten/problem/held.hpp>
 #include <batten/problem/subset.hpp>
 #include <batten/samples/noise.hpp>
@@ -210,12 +211,16 @@ Fitted curve_within(const Problem& given) {
     if (found.trial.control.empty())
         throw SolverError("no number of control points gives a solvable system: the samples' "
                           "parameters coincide");
-    Fitted result{spline_of(found.trial),
-                  {{found.trial.parameters}, {}},
-                  judged(task, outcome, limit),
+    const Spline spline = spline_of(found.trial);
+    const Parameters parameters{{found.trial.parameters}, {}};
+    std::vector<double> away = deviations(spline, samples, parameters, DeviationKind::distance);
+    Fitted result{spline, parameters, judged(task, outcome, limit, *std::ranges::max_element(away)),
                   DeviationKind::distance};
-    if (!turn.whole())
-        result.parameters.axes[0].push_back(found.trial.parameters[0] + found.trial.knots.length());
+    if (!turn.whole()) {
+        result.parameters.axes[0].push_back(parameters.axes[0][0] + found.trial.knots.length());
+        away.push_back(away[0]);
+    }
+    result.deviations = std::move(away);
     result.report.seconds.emplace_back("search", watch.lap());
     return result;
 }

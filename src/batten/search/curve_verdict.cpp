@@ -1,7 +1,6 @@
 #include <batten/search/curve_verdict.hpp>
 
 #include <batten/measure/between_samples.hpp>
-#include <batten/measure/deviation.hpp>
 #include <batten/measure/inflections.hpp>
 #include <batten/search/search.hpp>
 #include <batten/shape/polygon.hpp>
@@ -58,12 +57,6 @@ FitReport inflections_of(const CurveTask& task, const CurveTrial& trial) {
     return report;
 }
 
-double largest_deviation(const CurveTask& task, const CurveTrial& trial) {
-    const std::vector<double> off = deviations(spline_of(trial), task.samples,
-                                               {{trial.parameters}, {}}, DeviationKind::distance);
-    return *std::ranges::max_element(off);
-}
-
 std::string between_words(const BetweenSamples& between) {
     if (between.good) return {};
     if (between.loops > 0)
@@ -76,7 +69,8 @@ std::string between_words(const BetweenSamples& between) {
 
 } // namespace
 
-FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allowed) {
+FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allowed,
+                 double deviation) {
     const CurveWithin& found = outcome.found;
     const Index n = found.trial.knots.free_count();
     const Index m = task.samples.size();
@@ -91,7 +85,7 @@ FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allow
                                                 .allowed = allowed,
                                                 .noise = outcome.noise,
                                                 .control_points = n,
-                                                .deviation = largest_deviation(task, found.trial),
+                                                .deviation = deviation,
                                                 .unit = task.unit});
     report.verdict += near_interpolation_words(n, m, outcome.noise, task.unit);
     report.verdict += between_words(between);

@@ -27,7 +27,8 @@ struct CurveOutcome {
 };
 
 /// The account of a search: the certificate, the verdict and the ending; `allowed`: control points,
-/// where a limit was stated.
-FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allowed);
+/// where a limit was stated; `deviation`: the largest of a sample.
+FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allowed,
+                 double deviation);
 
 } // namespace batten

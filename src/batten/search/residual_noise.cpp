@@ -6,6 +6,7 @@
 #include <batten/solve/direct.hpp>
 #include <batten/system/factored_system.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace batten {
@@ -43,11 +44,23 @@ bool independent(const PointSet& r) {
     return turns >= steps / 2 - std::sqrt(steps);
 }
 
+/// Of very many samples evenly some, which tell the noise to half a percent.
+PointSet enough(const Points& q) {
+    constexpr Index most = 1 << 16;
+    const Index stride = (q.size() + most - 1) / most;
+    PointSet some(q.size() / stride, q.dim());
+    for (Index i = 0; i < some.size(); ++i) std::ranges::copy(q[i * stride], some[i].begin());
+    return some;
+}
+
 } // namespace
 
-double residual_noise(const Points& q) {
+double residual_noise(const Points& all) {
+    if (all.size() < samples_per_span) return 0;
+    const PointSet some = enough(all);
+    const Points q(some);
     const Index m = q.size();
-    if (m < samples_per_span || !(diagonal(q) > 0)) return 0;
+    if (!(diagonal(q) > 0)) return 0;
     const std::vector<double> t = noise_aware_parameters(q, Closure::open);
     for (Index spans = 1; spans * samples_per_span <= m; spans *= 2) {
         try {
