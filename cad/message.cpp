@@ -87,7 +87,7 @@ std::vector<double> Unpacker::take_numbers() {
     const std::string_view bytes = take(static_cast<std::size_t>(take_number(0, left)));
     if (bytes.size() % sizeof(double) != 0) not_whole();
     std::vector<double> numbers(bytes.size() / sizeof(double));
-    std::memcpy(numbers.data(), bytes.data(), bytes.size());
+    if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
     return numbers;
 }
 

@@ -13,7 +13,7 @@ import unittest
 
 import numpy as np
 
-from judge import BATTEN, GUARD, lacks
+from judge import BATTEN, GUARD, SANITIZED, lacks
 
 
 class Files(unittest.TestCase):
@@ -332,6 +332,7 @@ class StandardOutput(Files):
 
 
 class Machine(Files):
+    @unittest.skipIf(SANITIZED, "the sanitizer needs threads of its own")
     def test_no_threads(self):
         """An ordinary user whose processes are all used up gets the same surface."""
         self.folder.chmod(0o755)
@@ -356,6 +357,7 @@ class Machine(Files):
         for most in (1, 2, 3):
             self.assertEqual(self.read(f"out/{most}.json"), self.read("all.json"))
 
+    @unittest.skipIf(SANITIZED, "the sanitizer needs the address space")
     def test_no_memory(self):
         """With any limit a command ends well, or with one line and every file as it was."""
         self.good("generate", "peaks", "--samples", "400x400", "-o", "g.npy")
@@ -400,7 +402,8 @@ class Machine(Files):
                              "fit cloud.xyz --project xy -p 1 -n 4294967296x4294967296")):
             with self.subTest(line):
                 # so little memory that trying would show
-                done = self.run_batten(*line.split(), preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 30,) * 2))
+                limit = None if SANITIZED else lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 30,) * 2)
+                done = self.run_batten(*line.split(), preexec_fn=limit)
                 self.assertRegex(done.stderr.decode(), "^" + words.replace("(", r"\(") + "$")
                 self.assertEqual(done.returncode, 2)
 

@@ -12,6 +12,8 @@ BATTEN = os.environ["BATTEN"]
 ROOT = pathlib.Path(os.environ["BATTEN_ROOT"])
 SHARED = ROOT.parent / "shared" / "data"
 HAS_CAD = (pathlib.Path(BATTEN).parent / "batten-cad").exists()
+# a sanitizer needs address space and threads of its own: what limits them is tested in the other builds
+SANITIZED = os.environ.get("BATTEN_SANITIZED") == "1"
 GUARD = 1200  # seconds: ends a test that hangs, never one on a busy machine
 # before a command: files and folders keep their modes' word, also for root
 ORDINARY = ["setpriv", "--bounding-set=-dac_override,-dac_read_search"] if os.geteuid() == 0 else []
