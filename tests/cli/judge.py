@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import signal
 import sys
 
 import numpy as np
@@ -17,6 +18,9 @@ SANITIZED = os.environ.get("BATTEN_SANITIZED") == "1"
 GUARD = 1200  # seconds: ends a test that hangs, never one on a busy machine
 # before a command: files and folders keep their modes' word, also for root
 ORDINARY = ["setpriv", "--bounding-set=-dac_override,-dac_read_search"] if os.geteuid() == 0 else []
+for number in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
+    if signal.getsignal(number) == signal.SIG_IGN:  # under nohup programs would be started as deaf as the tests
+        signal.signal(number, signal.SIG_DFL)
 
 
 def lacks(test, what):
