@@ -1,29 +1,23 @@
 """CLSPIA is converged only when its samples are hit and it is the optimum: judged by a dense solve of the saddle point in NumPy."""
 import json
-import pathlib
 import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 from scipy.interpolate import BSpline
 
-from judge import BATTEN, GUARD
+from judge import BATTEN, GUARD, InFolder
 
 COUNT = 20
 HELD = [0, 60, 115, 199]
 EXACT = 1e-9  # part of the data's size
 
 
-class ClspiaTruth(unittest.TestCase):
+class ClspiaTruth(InFolder):
     def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
+        super().setUp()
         self.t = np.linspace(0, 1, 200)
         self.data = np.c_[np.cos(4 * self.t) + self.t, np.sin(6 * self.t)] + 0.02 * np.random.default_rng(3).normal(size=(200, 2))
-
-    def tearDown(self):
-        self._folder.cleanup()
 
     def fit(self, data, *arguments):
         """(summary, the spline at the samples, its distance from the dense optimum), both over the data's size."""

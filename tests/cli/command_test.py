@@ -1,32 +1,20 @@
 """The command as a user meets it: files in and out, messages, exit statuses. Numbers are checked by SciPy."""
 import json
 import os
-import pathlib
 import pty
 import re
 import select
 import signal
 import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 from scipy.interpolate import BSpline, make_lsq_spline
 
-from judge import BATTEN, GUARD, ORDINARY, ROOT, airfoils, chord, evaluate, shared
+from judge import BATTEN, GUARD, InFolder, ORDINARY, ROOT, airfoils, chord, evaluate, shared
 
 
-class Command(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
-
-    def tearDown(self):
-        self._folder.cleanup()
-
-    def run_batten(self, *arguments, stdin=None):
-        return subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, input=stdin, capture_output=True, text=True, timeout=GUARD)
-
+class Command(InFolder):
     def good(self, *arguments, stdin=None):
         done = self.run_batten(*arguments, stdin=stdin)
         self.assertEqual(done.returncode, 0, done.stderr)

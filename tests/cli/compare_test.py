@@ -4,15 +4,13 @@ import json
 import os
 import pathlib
 import re
-import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 from scipy.interpolate import BSpline
 from scipy.optimize import least_squares, minimize, minimize_scalar
 
-from judge import BATTEN, GUARD
+from judge import InFolder
 
 HARD = pathlib.Path(os.environ["BATTEN_ROOT"]).parent / "shared" / "data" / "hard"
 
@@ -100,16 +98,9 @@ def surface_distances(spline, points):
     return np.sqrt(best)
 
 
-class Compare(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
-
-    def tearDown(self):
-        self._folder.cleanup()
-
+class Compare(InFolder):
     def run_batten(self, *arguments):
-        done = subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
+        done = super().run_batten(*arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 

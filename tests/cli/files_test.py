@@ -1,31 +1,25 @@
 """Files as outputs and inputs: what is replaced, what is written into, what is refused, and that nothing is lost on the way."""
 import json
 import os
-import pathlib
 import resource
 import shutil
 import socket
 import stat
 import subprocess
-import tempfile
 import threading
 import unittest
 
 import numpy as np
 
-from judge import BATTEN, GUARD, SANITIZED, lacks
+from judge import BATTEN, GUARD, InFolder, SANITIZED, lacks
 
 
-class Files(unittest.TestCase):
+class Files(InFolder):
     def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
+        super().setUp()
         t = np.linspace(0, 3, 60)
         np.savetxt(self.folder / "p.csv", np.c_[np.cos(t), np.sin(2 * t)], delimiter=",")
         self.good("fit", "p.csv", "-n", 8, "-q", "-o", "s.json")
-
-    def tearDown(self):
-        self._folder.cleanup()
 
     def run_batten(self, *arguments, **how):
         how = {"capture_output": True, "stdin": subprocess.DEVNULL, **how}

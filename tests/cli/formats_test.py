@@ -1,16 +1,14 @@
 """Files for and from other programs: each is read or made by something else (SciPy, meshio, ElementTree, struct) and numbers agree."""
 import json
-import pathlib
 import struct
 import subprocess
-import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 from scipy.interpolate import BSpline
 
-from judge import BATTEN, GUARD, HAS_CAD, lacks, surface_distances
+from judge import BATTEN, GUARD, HAS_CAD, InFolder, lacks, surface_distances
 
 
 def evaluate(knots, control, degree, parameters):
@@ -20,14 +18,7 @@ def evaluate(knots, control, degree, parameters):
     return control
 
 
-class Formats(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
-
-    def tearDown(self):
-        self._folder.cleanup()
-
+class Formats(InFolder):
     def batten(self, *arguments, status=0):
         done = subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
         self.assertEqual(done.returncode, status, done.stderr)

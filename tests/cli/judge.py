@@ -3,7 +3,10 @@ import json
 import os
 import pathlib
 import signal
+import subprocess
 import sys
+import tempfile
+import unittest
 
 import numpy as np
 from scipy.interpolate import BSpline
@@ -21,6 +24,20 @@ ORDINARY = ["setpriv", "--bounding-set=-dac_override,-dac_read_search"] if os.ge
 for number in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
     if signal.getsignal(number) == signal.SIG_IGN:  # under nohup programs would be started as deaf as the tests
         signal.signal(number, signal.SIG_DFL)
+
+
+class InFolder(unittest.TestCase):
+    """Runs the command in a folder of the test's own."""
+
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self._folder.name)
+
+    def tearDown(self):
+        self._folder.cleanup()
+
+    def run_batten(self, *arguments, stdin=None):
+        return subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, input=stdin, capture_output=True, text=True, timeout=GUARD)
 
 
 def lacks(test, what):

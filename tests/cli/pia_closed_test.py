@@ -1,14 +1,11 @@
 """PIA on closed axes: control point i follows the sample at the peak of its B-spline; rates are those of NumPy's eigenvalues, and above 1 refused."""
 import json
-import pathlib
-import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 from scipy.interpolate import BSpline
 
-from judge import BATTEN, GUARD
+from judge import InFolder
 
 
 def basis(knots, degree, t, closed):
@@ -40,17 +37,10 @@ def rate(matrix, weight=1.0):
     return np.abs(1 - weight * values).max(), 1e-14 * certain
 
 
-class ClosedPia(unittest.TestCase):
+class ClosedPia(InFolder):
     def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
+        super().setUp()
         self.rng = np.random.default_rng(7)
-
-    def tearDown(self):
-        self._folder.cleanup()
-
-    def run_batten(self, *arguments):
-        return subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
 
     def parameters(self, count, spread, closed):
         gaps = np.exp(spread * self.rng.uniform(-1, 1, count))

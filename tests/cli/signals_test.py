@@ -5,13 +5,12 @@ import pathlib
 import resource
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
 import numpy as np
 
-from judge import BATTEN, GUARD
+from judge import BATTEN, GUARD, InFolder
 
 SOON = 1.0   # seconds that an end may take, of the processor's time and of waiting for a busy machine left out
 ENDINGS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -27,17 +26,13 @@ def until(condition, what):
         time.sleep(0.002)
 
 
-class Signals(unittest.TestCase):
+class Signals(InFolder):
     def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
+        super().setUp()
         t = np.linspace(0, 3, 60)
         np.savetxt(self.folder / "p.csv", np.c_[np.cos(t), np.sin(2 * t)], delimiter=",")
         subprocess.run([BATTEN, "fit", "p.csv", "-n", "8", "-q", "-o", "s.json"], cwd=self.folder, check=True)
         (self.folder / "old.json").write_text("old")
-
-    def tearDown(self):
-        self._folder.cleanup()
 
     def start(self, *arguments, **how):
         how = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, **how}

@@ -1,30 +1,21 @@
 """Fits to a tolerance on real data: counts against the peers' (measured: FITPACK, Open CASCADE, SISL), distances by SciPy from the written file."""
 import json
 import math
-import pathlib
 import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 from scipy.interpolate import BSpline
 from scipy.optimize import minimize_scalar
 
-from judge import BATTEN, GUARD, airfoils, chord, control_points, curve, evaluate, largest_distance, shared, surface_distances
+from judge import BATTEN, GUARD, InFolder, airfoils, chord, control_points, curve, evaluate, largest_distance, shared, surface_distances
 
 # control points of the best peer that truly kept T = 1e-2, 1e-3, 1e-4
 PEERS = {"profile205.csv": (27, 60, 149), "glyph273.csv": (40, 109, 161), "glyph577.csv": (38, 98, 171),
          "rose": (28, 43, 76), "helix": (22, 35, 58), "naca2412": (9, 13, 22)}
 
 
-class Tolerance(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
-
-    def tearDown(self):
-        self._folder.cleanup()
-
+class Tolerance(InFolder):
     def fit(self, points, *arguments, status=0):
         done = subprocess.run([BATTEN, "fit", str(points), *map(str, arguments), "-q", "-o", "o.json", "--summary", "s.json"], cwd=self.folder,
                               capture_output=True, text=True, timeout=GUARD)

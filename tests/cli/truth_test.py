@@ -4,13 +4,12 @@ import os
 import pathlib
 import re
 import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 from scipy.interpolate import BSpline
 
-from judge import BATTEN, GUARD, shared
+from judge import BATTEN, GUARD, InFolder, shared
 
 AIRFOILS = pathlib.Path(os.environ["BATTEN_ROOT"]).parent / "shared" / "data" / "airfoils"
 # thin sections of few samples, on which searches at a tight tolerance go astray, and some ordinary ones
@@ -49,14 +48,7 @@ def largest_distance(spline, points):
     return worst
 
 
-class Truth(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
-
-    def tearDown(self):
-        self._folder.cleanup()
-
+class Truth(InFolder):
     def fit(self, points, *arguments):
         if not isinstance(points, pathlib.Path):
             np.save(self.folder / "p.npy", np.ascontiguousarray(points))

@@ -1,28 +1,15 @@
 """Exit statuses, endings and words say what holds: every stated goal is judged here by SciPy on the written spline."""
 import json
-import pathlib
 import re
-import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 from scipy.interpolate import BSpline
 
-from judge import BATTEN, GUARD, ROOT, chord, control_points, curve, evaluate, largest_distance, shared
+from judge import InFolder, ROOT, chord, control_points, curve, evaluate, largest_distance, shared
 
 
-class Verdicts(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
-
-    def tearDown(self):
-        self._folder.cleanup()
-
-    def run_batten(self, *arguments):
-        return subprocess.run([BATTEN, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
-
+class Verdicts(InFolder):
     def fit(self, status, points, *options):
         """The spline and the report of a fit that ends with `status`."""
         done = self.run_batten("fit", points, *options, "-o", "s.json", "--summary", "r.json")
