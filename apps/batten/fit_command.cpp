@@ -3,7 +3,6 @@
 #include "fit_flags.hpp"
 #include "progress.hpp"
 
-#include <batten/io/output_file.hpp>
 #include <batten/io/output_set.hpp>
 #include <batten/io/spline_file.hpp>
 #include <batten/iterate/methods.hpp>
@@ -53,19 +52,14 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
         return Continue::yes;
     };
     progress.say("fitting");
-    FitResult result = fit(samples, options);
+    const FitResult result = fit(samples, options);
     if (!result.report.usable())
         throw SolverError(
             "the iteration broke down: numbers left the finite range; nothing was written");
-    const std::vector<double> deviations =
-        flags.outputs.empty() && flags.report.empty()
-            ? std::vector<double>()
-            : batten::deviations(result.spline, samples, result.parameters,
-                                 result.report.deviation.kind);
     Scene scene{.spline = result.spline,
                 .samples = &samples,
                 .title = title_of(flags.points),
-                .deviations = &deviations};
+                .deviations = &result.deviations};
     apply(flags.exported, scene);
     OutputSet outputs;
     for (const std::string& output : flags.outputs) {

@@ -101,8 +101,7 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     const HoldOptions& hold = problem.options.hold;
     const Spline& spline = fitted.spline;
     FitReport report = std::move(fitted.report);
-    constexpr const char* kinds[] = {"curve", "surface", "volume"};
-    report.kind = kinds[spline.axis_count() - 1];
+    report.kind = kind_name(spline);
     report.samples = samples.size();
     report.dim = samples.dim();
     report.control_shape = spline.control_shape();
@@ -114,7 +113,7 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     std::vector<std::string> notes = samples.notes;
     if (problem.tolerance.empty()) note_duplicates(fitted.parameters, notes);
     report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
-    const std::vector<double> away =
+    std::vector<double> away =
         fitted.deviations.empty() ? deviations(spline, samples, fitted.parameters, fitted.judged_by)
                                   : std::move(fitted.deviations);
     report.deviation = summarise(away, fitted.judged_by);
@@ -131,7 +130,8 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     const Termination before = report.termination;
     report.termination = ending(report);
     report.verdict = verdict_of(report, before);
-    return {std::move(fitted.spline), std::move(report), std::move(fitted.parameters)};
+    return {std::move(fitted.spline), std::move(report), std::move(fitted.parameters),
+            std::move(away)};
 }
 
 } // namespace batten

@@ -4,6 +4,7 @@
 #include <batten/drivers/choose.hpp>
 #include <batten/fit/account.hpp>
 #include <batten/fit/rescale.hpp>
+#include <batten/measure/deviation.hpp>
 #include <batten/problem/subset.hpp>
 #include <batten/robust/outliers.hpp>
 
@@ -54,16 +55,20 @@ FitResult solved(const Problem& problem, double problem_seconds) {
 /// The result of the samples that were kept, in terms of all.
 FitResult with_outliers(FitResult result, const Problem& problem,
                         const std::vector<Index>& outliers) {
+    if (outliers.empty()) return result;
     FitReport& report = result.report;
     report.set_aside = outliers;
-    if (problem.kind == SampleKind::grid) return result;
-    const Subset kept = Subset::without(outliers, problem.samples.size());
-    report.samples = problem.samples.size();
-    report.deviation.worst_sample = kept.original(report.deviation.worst_sample);
-    if (problem.kind == SampleKind::cloud)
-        result.parameters = problem.parameters;
-    else
-        result.parameters.axes[0] = kept.spread(result.parameters.axes[0]);
+    if (problem.kind != SampleKind::grid) {
+        const Subset kept = Subset::without(outliers, problem.samples.size());
+        report.samples = problem.samples.size();
+        report.deviation.worst_sample = kept.original(report.deviation.worst_sample);
+        if (problem.kind == SampleKind::cloud)
+            result.parameters = problem.parameters;
+        else
+            result.parameters.axes[0] = kept.spread(result.parameters.axes[0]);
+    }
+    result.deviations =
+        deviations(result.spline, problem.samples, result.parameters, report.deviation.kind);
     return result;
 }
 
@@ -78,9 +83,8 @@ FitResult fit(const Samples& samples, const FitOptions& options) {
     const Problem problem = problem_of(samples, options);
     if (options.outliers == Outliers::count) return solved(problem, watch.lap());
     choose(problem); // refuses what cannot be before the work is done
-    const std::vector<Index> outliers = find_outliers(problem);
-    const Problem rest = without_outliers(problem, outliers);
-    return with_outliers(solved(rest, watch.lap()), problem, outliers);
+    const WithoutOutliers found = without_outliers(problem);
+    return with_outliers(solved(found.rest, watch.lap()), problem, found.outliers);
 }
 
 } // namespace batten

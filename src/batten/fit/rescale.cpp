@@ -75,6 +75,7 @@ FitResult rescaled(FitResult result, double factor) {
           &report.first_gradient_norm, &report.constraint_error, &report.boundary_error,
           &report.tolerance, &report.noise_level, &report.data_size})
         *length *= factor;
+    scale(result.deviations, factor);
     scale(report.settings, factor);
     for (Goal& goal : report.goals)
         if (goal.name != "inflections" && goal.name != "tangents") {

@@ -41,12 +41,16 @@ double off_segment(std::span<const double> p, std::span<const double> a,
 /// turn.
 bool turns_around(const PointSet& p, Index first, Index count) {
     double turned = 0;
+    bool gentle = count <= 6; // turns of an eighth each do not make it
     for (Index k = first; k + 2 <= first + count; ++k) {
         const double ux = p(k + 1, 0) - p(k, 0);
         const double uy = p(k + 1, 1) - p(k, 1);
         const double vx = p(k + 2, 0) - p(k + 1, 0);
         const double vy = p(k + 2, 1) - p(k + 1, 1);
-        turned += std::atan2(ux * vy - uy * vx, ux * vx + uy * vy);
+        const double sine = ux * vy - uy * vx;
+        const double cosine = ux * vx + uy * vy;
+        gentle = gentle && std::abs(sine) <= cosine;
+        if (!gentle) turned += std::atan2(sine, cosine);
     }
     return std::abs(turned) > 1.5 * std::numbers::pi;
 }

@@ -10,6 +10,8 @@ struct FitResult {
     Spline spline;
     FitReport report;
     Parameters parameters;
+    /// How far the spline is from each sample, those set aside too: of report.deviation.kind.
+    std::vector<double> deviations{};
 };
 
 /// What a driver answers: its account holds how it went, not yet what every fit's account says.

@@ -1,6 +1,7 @@
 #include <batten/robust/outliers.hpp>
 
 #include <batten/measure/deviation.hpp>
+#include <batten/problem/subset.hpp>
 #include <batten/robust/robust_fit.hpp>
 #include <batten/samples/noise.hpp>
 
@@ -60,11 +61,9 @@ std::vector<double> around(const Parameters& parameters, const std::vector<KnotV
 
 std::vector<bool> protected_samples(const Samples& samples, const HoldOptions& hold) {
     std::vector<bool> result(static_cast<std::size_t>(samples.size()), false);
-    const auto protect = [&](Index i) {
-        if (i >= 0 && i < samples.size()) result[static_cast<std::size_t>(i)] = true;
-    };
-    for (Index i : hold.interpolate) protect(i);
-    for (const HeldTangent& tangent : hold.tangents) protect(tangent.sample);
+    for (Index i : hold.interpolate) result[static_cast<std::size_t>(i)] = true;
+    for (const HeldTangent& tangent : hold.tangents)
+        result[static_cast<std::size_t>(tangent.sample)] = true;
     return result;
 }
 
@@ -106,13 +105,9 @@ Judgement judge(const Problem& problem) {
     return result;
 }
 
-} // namespace
-
-std::vector<Index> find_outliers(const Problem& problem) {
-    std::vector<Index> outliers = judge(problem).outliers;
-    if (problem.kind == SampleKind::grid) return outliers;
-    // far samples stretch the chords that parameters come from, and take neighbours along: fits
-    // without them tell which of all samples are far indeed
+/// Far samples stretch the chords that parameters come from, and take neighbours along: fits
+/// without those judged first tell which of all samples are far indeed.
+std::vector<Index> confirmed(std::vector<Index> outliers, const Problem& problem) {
     const std::vector<double> least = least_residuals(problem);
     constexpr int most_rounds = 5;
     for (int round = 0; round < most_rounds && !outliers.empty(); ++round) {
@@ -137,24 +132,32 @@ std::vector<Index> find_outliers(const Problem& problem) {
     return outliers;
 }
 
-Problem without_outliers(const Problem& problem, const std::vector<Index>& outliers) {
-    if (outliers.empty()) return problem;
-    if (problem.kind != SampleKind::grid) {
-        const Subset kept = Subset::without(outliers, problem.samples.size());
-        return problem_of(kept.of(problem.samples), kept.of(problem.options));
-    }
-    Problem rest = problem;
-    const PointSet fitted = judge(problem).fitted;
+/// The grid's problem with the robust fit's values in the place of outliers.
+Problem with_values(Problem problem, const std::vector<Index>& outliers, const PointSet& fitted) {
     PointSet points(problem.samples.points);
     for (Index i : outliers) {
         std::ranges::copy(fitted[i], points[i].begin());
-        if (!rest.tolerance.empty())
-            rest.tolerance[static_cast<std::size_t>(i)] = std::numeric_limits<double>::infinity();
+        if (!problem.tolerance.empty())
+            problem.tolerance[static_cast<std::size_t>(i)] =
+                std::numeric_limits<double>::infinity();
     }
-    rest.samples.points = std::move(points);
-    rest.samples.notes.emplace_back(
+    problem.samples.points = std::move(points);
+    problem.samples.notes.emplace_back(
         "samples set aside count as the robust fit's values in the grid's equations");
-    return rest;
+    return problem;
+}
+
+} // namespace
+
+WithoutOutliers without_outliers(const Problem& problem) {
+    Judgement first = judge(problem);
+    const bool grid = problem.kind == SampleKind::grid;
+    std::vector<Index> outliers =
+        grid ? std::move(first.outliers) : confirmed(std::move(first.outliers), problem);
+    if (outliers.empty()) return {problem, {}};
+    if (grid) return {with_values(problem, outliers, first.fitted), std::move(outliers)};
+    const Subset kept = Subset::without(outliers, problem.samples.size());
+    return {problem_of(kept.of(problem.samples), kept.of(problem.options)), std::move(outliers)};
 }
 
 } // namespace batten

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace batten {
 
@@ -96,17 +95,17 @@ bool runs_backwards(const Points& q, Closure closure) {
     Balance turning;
     Balance samples;
     std::vector<double> before; // direction of the chord to the sample
+    std::vector<double> after(static_cast<std::size_t>(q.dim()));
     for (Index i = 0; i + 1 < (closed ? m + 1 : m); ++i) {
         const auto next = q[(i + 1) % m];
         const double length = distance(q[i], next);
         if (!(length > 0)) continue;
-        std::vector<double> after;
-        for (Index d = 0; d < q.dim(); ++d)
-            after.push_back((next[static_cast<std::size_t>(d)] - q(i, d)) / length);
+        for (std::size_t d = 0; d < after.size(); ++d)
+            after[d] = (next[d] - q(i, static_cast<Index>(d))) / length;
         const double from = t[static_cast<std::size_t>(i)];
         samples.add((from + t[static_cast<std::size_t>(i + 1)] - 1) / 2, 1);
         if (!before.empty()) turning.add(from - 0.5, distance(before, after));
-        before = std::move(after);
+        before = after;
     }
     if (turning.side() != 0) return turning.side() < 0;
     if (samples.side() != 0) return samples.side() < 0;

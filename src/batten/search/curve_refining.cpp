@@ -69,16 +69,18 @@ bool refine(const CurveTask& task, CurveTrial& trial, const std::vector<double>&
 }
 
 /// Where the curve strays between two samples: knots there, until it does not, or as before when
-/// that does not help.
-void calm(const CurveTask& task, CurveTrial& trial, Index most, ClosestSeen& closest) {
+/// that does not help. Returns what part it then uses of what is allowed between samples.
+double calm(const CurveTask& task, CurveTrial& trial, Index most, ClosestSeen& closest) {
     constexpr int most_tries = 12;
     CurveTrial attempt = trial;
+    double strays = 0; // of `trial`
     for (int tries = 0; tries < most_tries; ++tries) {
         const BetweenSamples worst = check_between(spline_of(attempt), task.samples.points,
                                                    attempt.parameters, task.tolerance);
+        if (tries == 0) strays = worst.excess;
         if (worst.good) {
             trial = std::move(attempt);
-            return;
+            return worst.excess;
         }
         const auto a = static_cast<std::size_t>(worst.worst_sample);
         const bool seam = a + 1 == attempt.parameters.size();
@@ -90,17 +92,18 @@ void calm(const CurveTask& task, CurveTrial& trial, Index most, ClosestSeen& clo
                     {std::max(from - width / 2, attempt.knots.begin() + width / 4),
                      std::min(to + width / 2, attempt.knots.end() - width / 4)},
                     most))
-            return;
+            break;
         attempt.parameters = task.parameters;
         attempt.weights = first_weights(task);
         if (!settle(task, attempt, 6, KnotShift::none)) {
             closest.see(task, attempt);
-            if (!refine(task, attempt, knots_where_the_error_is(task, attempt), most)) return;
+            if (!refine(task, attempt, knots_where_the_error_is(task, attempt), most)) break;
             settle(task, attempt, 6, KnotShift::none);
         }
         closest.see(task, attempt);
-        if (attempt.worst > 1) return;
+        if (attempt.worst > 1) break;
     }
+    return strays;
 }
 
 /// One way of refining: from which parameters each round starts, how long it tries, which spans get
@@ -180,8 +183,8 @@ CurveWithin refined(const CurveTask& task, Index most) {
                                   {From::last_round, 6, 0.5}}) {
         CurveTrial trial = refine_by(way, task, most, result.closest);
         const bool met = trial.worst <= 1;
-        if (met) calm(task, trial, most, result.closest);
-        const double strays = met ? between(task, trial) : std::numeric_limits<double>::infinity();
+        const double strays =
+            met ? calm(task, trial, most, result.closest) : std::numeric_limits<double>::infinity();
         const bool better = met != result.met ? met
                             : met             ? strays < least_straying
                                               : trial.worst < result.trial.worst;

@@ -1,6 +1,5 @@
 #include <batten/core/stopwatch.hpp>
 #include <batten/measure/deviation.hpp>
-#include <batten/problem/held.hpp>
 #include <batten/problem/subset.hpp>
 #include <batten/samples/noise.hpp>
 #include <batten/search/curve_corners.hpp>
@@ -11,9 +10,9 @@
 #include <batten/search/search.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace batten {
@@ -156,14 +155,19 @@ CurveTask turned_task(const CurveTask& task, const Turned& turned, const Samples
 /// does not meet the tolerance; if neither does, for the closest curve that may be handed out.
 CurveOutcome searched_either_way(CurveTask& task, const FitOptions& options, Index most) {
     const Turned turned(task.samples.size(), task.closure);
-    const Samples reverse = turned(task.samples);
-    CurveTask backwards = turned_task(task, turned, reverse, options.shape);
-    std::vector<CurveTask*> ways{&task, &backwards};
-    if (task.closure == Closure::closed && options.shape.parameters)
-        ways = {&task}; // they need not begin at the seam, from which others are counted back
-    else if (runs_backwards(task.samples.points, task.closure))
-        ways = {&backwards, &task};
-    if (task.samples.size() > few_samples) ways.resize(1);
+    // given parameters of a closed curve need not begin at the seam, from which turned ones count
+    const bool turns = task.closure == Closure::open || !options.shape.parameters;
+    const bool first_backwards = turns && runs_backwards(task.samples.points, task.closure);
+    const bool both = turns && task.samples.size() <= few_samples;
+    Samples reverse;
+    std::optional<CurveTask> backwards;
+    std::vector<CurveTask*> ways;
+    if (both || !first_backwards) ways.push_back(&task);
+    if (both || first_backwards) {
+        reverse = turned(task.samples);
+        backwards.emplace(turned_task(task, turned, reverse, options.shape));
+        ways.insert(first_backwards ? ways.begin() : ways.end(), &*backwards);
+    }
     std::vector<CurveOutcome> outcomes;
     std::size_t best = 0;
     for (CurveTask* way : ways) {
@@ -183,7 +187,7 @@ CurveOutcome searched_either_way(CurveTask& task, const FitOptions& options, Ind
         best = k;
     }
     CurveTrial& trial = outcomes[best].found.trial;
-    if (ways[best] == &backwards && !trial.control.empty()) trial = turned(trial);
+    if (ways[best] != &task && !trial.control.empty()) trial = turned(trial);
     return std::move(outcomes[best]);
 }
 
