@@ -83,6 +83,9 @@ void add_method_flags(CLI::App& fit, FitFlags& flags) {
                    "convexity, or no more inflections than the samples (with a size: than the "
                    "initial control polygon)")
         ->group("Must hold");
+}
+
+void add_noise_and_stop_flags(CLI::App& fit, FitFlags& flags) {
     fit.add_flag("--robust", flags.robust, "Find outliers, list them and leave them out")
         ->group("Noise");
     fit.add_option("--smooth", flags.smooth,
@@ -137,6 +140,7 @@ void add_flags(CLI::App& fit, FitFlags& flags) {
     add_output_flags(fit, flags);
     add_shape_flags(fit, flags);
     add_method_flags(fit, flags);
+    add_noise_and_stop_flags(fit, flags);
     one_value_each(fit);
 }
 

@@ -113,11 +113,9 @@ void compare(const std::string& spline_path, const PointFlags& points) {
 }
 
 void describe_spline(const std::string& path, const Spline& spline) {
-    constexpr const char* kinds[] = {"curve", "surface", "volume"};
     const PointSet box = bounding_box(spline.control_points());
-    fmt::print("{}: B-spline {} in dimension {}, {} control points\n", path,
-               kinds[spline.axis_count() - 1], spline.dim(),
-               fmt::join(spline.control_shape(), "x"));
+    fmt::print("{}: B-spline {} in dimension {}, {} control points\n", path, kind_name(spline),
+               spline.dim(), fmt::join(spline.control_shape(), "x"));
     for (Index k = 0; k < spline.axis_count(); ++k) {
         const KnotVector& axis = spline.axis(k);
         fmt::print("  axis {}: degree {}, {}, {} knots, domain [{:.6g}, {:.6g}], {} pieces\n", k,

@@ -14,7 +14,6 @@
 #include <batten/solve/keep_shape.hpp>
 
 #include <algorithm>
-#include <fmt/format.h>
 
 namespace batten {
 

@@ -25,17 +25,10 @@ constexpr Requests curves{seam, shape};          ///< what only a curve has
 constexpr Requests held{samples, tangents};
 constexpr Requests searched{tolerance, limit, parameters, weights, closed, outliers, history};
 
-Driver driver_of(const MethodEntry& entry, std::optional<Requests> sequence,
-                 std::optional<Requests> grid, std::optional<Requests> cloud,
-                 Fitted (*fit)(const Problem&, std::string_view)) {
-    return {entry.name, entry.description, entry.source, entry.settings, sequence, grid, cloud,
-            fit};
-}
-
 /// The columns of an iteration on the normal equations.
 Driver iteration(std::string_view name) {
     const Requests all = space | least_squares_terms | course;
-    return driver_of(method_entry(name), all | curves, all, all - rules, fit_least_squares);
+    return {method_entry(name), all | curves, all, all - rules, fit_least_squares};
 }
 
 std::vector<Driver> table() {
@@ -45,22 +38,22 @@ std::vector<Driver> table() {
     const Requests interpolating = space | course | Requests{local};
     const Requests grown{size, history, stop, outliers};
     return {
-        driver_of(method_entry("direct"), solved | curves, solved | boundary, solved - rules,
-                  fit_least_squares),
+        {method_entry("direct"), solved | curves, solved | boundary, solved - rules,
+         fit_least_squares},
         iteration("lspia"),
         iteration("mlspia"),
-        driver_of(method_entry("clspia"), solved | curves, solved | boundary, solved - rules,
-                  fit_least_squares),
-        driver_of(method_entry("pia"), interpolating | Requests{shape}, interpolating, std::nullopt,
-                  fit_pia),
-        driver_of(method_entry("epia"), grown | Requests{samples, shape, parameters},
-                  grown | Requests{parameters}, grown | Requests{knots, start}, fit_epia),
+        {method_entry("clspia"), solved | curves, solved | boundary, solved - rules,
+         fit_least_squares},
+        {method_entry("pia"), interpolating | Requests{shape}, interpolating, std::nullopt,
+         fit_pia},
+        {method_entry("epia"), grown | Requests{samples, shape, parameters},
+         grown | Requests{parameters}, grown | Requests{knots, start}, fit_epia},
         iteration("cg"),
         iteration("chebyshev"),
         iteration("nesterov"),
         iteration("barzilai-borwein"),
-        driver_of(method_entry("search"), searched | held | curves | Requests{corners},
-                  searched | held | boundary, (searched | held) - rules, fit_by_search),
+        {method_entry("search"), searched | held | curves | Requests{corners},
+         searched | held | boundary, (searched | held) - rules, fit_by_search},
     };
 }
 

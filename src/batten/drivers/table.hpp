@@ -11,11 +11,7 @@
 namespace batten {
 
 /// Something that answers a problem: a direct solution, an iteration, a search.
-struct Driver {
-    std::string_view name;
-    std::string_view description;
-    std::string_view source; ///< of the method; empty for what is common knowledge
-    std::span<const MethodSetting> settings;
+struct Driver : MethodEntry {
     /// What it can be asked for, for each kind of samples that it fits.
     std::optional<Requests> sequence;
     std::optional<Requests> grid;

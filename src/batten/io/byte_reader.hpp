@@ -24,10 +24,6 @@ class ByteReader {
         if (place > content_.size()) fail_short(what, place);
         at_ = place;
     }
-    void skip(std::size_t bytes, std::string_view what) {
-        if (bytes > left()) fail_short(what, at_ + bytes);
-        at_ += bytes;
-    }
 
     template <class Number>
     Number read(std::string_view what, std::endian order = std::endian::little) {

@@ -14,7 +14,7 @@ namespace batten {
 struct MethodEntry {
     std::string_view name;
     std::string_view description;
-    std::string_view source;
+    std::string_view source; ///< empty for what is common knowledge
     std::span<const MethodSetting> settings;
 };
 

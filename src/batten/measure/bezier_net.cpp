@@ -88,16 +88,16 @@ void collapse(BezierNet& net, Index dim, const Face& face) {
     const Index inner = net.stride(face.axis);
     const Index order = net.degrees[face.axis] + 1;
     const Index rows = dim * net.coefficients() / (order * inner);
-    const Index offset = face.end == End::begin ? 0 : (order - 1) * inner;
+    const Index offset = face.end == AxisEnd::begin ? 0 : (order - 1) * inner;
     for (Index row = 0; row < rows; ++row) // moves to the left only
         std::copy_n(net.values.data() + row * order * inner + offset, inner,
                     net.values.data() + row * inner);
-    if (face.end == End::end) net.begin[face.axis] += net.width[face.axis];
+    if (face.end == AxisEnd::end) net.begin[face.axis] += net.width[face.axis];
     net.width[face.axis] = 0;
     net.degrees[face.axis] = 0;
 }
 
-void halve(BezierNet& net, Index dim, std::size_t axis, End kept, BezierNet& rest) {
+void halve(BezierNet& net, Index dim, std::size_t axis, AxisEnd kept, BezierNet& rest) {
     const Index inner = net.stride(axis);
     const Index order = net.degrees[axis] + 1;
     rest.degrees = net.degrees;
@@ -108,7 +108,7 @@ void halve(BezierNet& net, Index dim, std::size_t axis, End kept, BezierNet& res
     split(net.values.data(), rest.values.data(), dim * net.coefficients() / (order * inner), order,
           inner);
     rest.begin[axis] += rest.width[axis];
-    if (kept == End::end) std::swap(net, rest);
+    if (kept == AxisEnd::end) std::swap(net, rest);
 }
 
 } // namespace batten

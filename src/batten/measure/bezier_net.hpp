@@ -4,13 +4,10 @@
 
 namespace batten {
 
-/// The end of an axis.
-enum class End { begin, end };
-
 /// One boundary of a net: all of it where one axis is at an end.
 struct Face {
     std::size_t axis;
-    End end;
+    AxisEnd end;
 };
 
 /// Bezier control points of a polynomial piece, or of a box of its parameters.
@@ -42,6 +39,6 @@ void collapse(BezierNet& net, Index dim, const Face& face);
 
 /// Makes the net its own half before or after the middle of an axis and writes the other half to
 /// `rest`.
-void halve(BezierNet& net, Index dim, std::size_t axis, End kept, BezierNet& rest);
+void halve(BezierNet& net, Index dim, std::size_t axis, AxisEnd kept, BezierNet& rest);
 
 } // namespace batten

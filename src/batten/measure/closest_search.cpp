@@ -150,10 +150,11 @@ void ClosestSearch::divide(BezierNet& net) {
     const PerAxis<double> extent = extents(net, dim_);
     const auto axis =
         static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
-    const End near = squares_.least_at()[axis] < 0.5 ? End::begin : End::end;
+    const AxisEnd near = squares_.least_at()[axis] < 0.5 ? AxisEnd::begin : AxisEnd::end;
     if (parts_ == nets_.size()) nets_.emplace_back();
     BezierNet& farther = nets_[parts_ - 1];
-    halve(farther, dim_, axis, near == End::begin ? End::end : End::begin, nets_[parts_]);
+    halve(farther, dim_, axis, near == AxisEnd::begin ? AxisEnd::end : AxisEnd::begin,
+          nets_[parts_]);
     ++parts_;
 }
 

@@ -3,7 +3,6 @@
 #include <batten/core/vector_clones.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace batten {
@@ -192,7 +191,7 @@ std::optional<Face> SquaredDistance::downhill_face() const {
                 up = up && slope > least_step;
                 down = down && slope < -least_step;
             }
-        if (up || down) return Face{a, up ? End::begin : End::end};
+        if (up || down) return Face{a, up ? AxisEnd::begin : AxisEnd::end};
     }
     return std::nullopt;
 }

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
-#include <set>
 
 namespace batten {
 
@@ -24,8 +23,7 @@ void check_tangent(const HeldTangent& tangent, const Samples& samples, SampleKin
                    Index axes) {
     const Index m = samples.size();
     const Index i = tangent.sample;
-    if (i < 0 || i >= m)
-        throw InvalidInput(fmt::format("tangent at sample {}: the samples are 0 to {}", i, m - 1));
+    check_sample("tangent at sample", i, m);
     if (static_cast<Index>(tangent.value.size()) != samples.dim())
         throw InvalidInput(fmt::format("tangent at sample {}: {} coordinates given in dimension {}",
                                        i, tangent.value.size(), samples.dim()));
@@ -122,14 +120,7 @@ void hold_boundary(const HeldBoundary& boundary, const std::vector<KnotVector>& 
 
 void check_held(const HoldOptions& hold, const Samples& samples, SampleKind kind,
                 const AxisPlan& plan) {
-    std::set<Index> seen;
-    for (Index i : hold.interpolate) {
-        if (i < 0 || i >= samples.size())
-            throw InvalidInput(fmt::format("interpolated sample {}: the samples are 0 to {}", i,
-                                           samples.size() - 1));
-        if (!seen.insert(i).second)
-            throw InvalidInput(fmt::format("interpolated sample {} is given twice", i));
-    }
+    check_interpolated(hold.interpolate, samples.size());
     for (const HeldTangent& tangent : hold.tangents)
         check_tangent(tangent, samples, kind, static_cast<Index>(plan.count()));
     for (const HeldBoundary& boundary : hold.boundaries)

@@ -76,9 +76,6 @@ struct HeldTangent {
     TangentKind kind = TangentKind::direction;
 };
 
-/// Which end of an axis.
-enum class AxisEnd { begin, end };
-
 /// A curve that a surface (or a surface that a volume) must have as its boundary at one end of an
 /// axis: a spline over the other axes, whose domain is stretched to theirs.
 struct HeldBoundary {

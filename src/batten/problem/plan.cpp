@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace batten {
 
@@ -128,19 +127,20 @@ std::vector<KnotVector> fixed_knots(const Problem& problem) {
     return result;
 }
 
-std::vector<Index> smoothing_size(const Samples& samples, const AxisPlan& plan) {
-    const auto axes = static_cast<Index>(plan.count());
-    const bool grid = !samples.grid.empty();
+std::vector<Index> smoothing_size(const Problem& problem) {
+    const std::size_t axes = problem.axes.count();
+    const Index most = axes == 1 ? 200 : axes == 2 ? 60 : 20;
     std::vector<Index> result;
-    for (std::size_t k = 0; k < plan.count(); ++k) {
-        const double along =
-            grid ? static_cast<double>(samples.grid[k])
-                 : std::pow(static_cast<double>(samples.size()), 1 / static_cast<double>(axes));
-        const Index most = axes == 1 ? 200 : axes == 2 ? 60 : 20;
-        result.push_back(
-            std::clamp(static_cast<Index>(along / 2), Index{2 * plan.degree[k] + 1}, most));
-    }
+    for (std::size_t k = 0; k < axes; ++k)
+        result.push_back(std::clamp(static_cast<Index>(samples_along(problem, k) / 2),
+                                    Index{2 * problem.axes.degree[k] + 1}, most));
     return result;
+}
+
+double samples_along(const Problem& problem, std::size_t axis) {
+    if (problem.kind == SampleKind::grid) return static_cast<double>(problem.samples.grid[axis]);
+    return std::pow(static_cast<double>(problem.samples.size()),
+                    1 / static_cast<double>(problem.axes.count()));
 }
 
 } // namespace batten

@@ -14,6 +14,9 @@ std::vector<KnotVector> fixed_knots(const Problem& problem);
 
 /// Control points per axis when smoothing rules the detail and their number does not: enough to
 /// follow the samples.
-std::vector<Index> smoothing_size(const Samples& samples, const AxisPlan& plan);
+std::vector<Index> smoothing_size(const Problem& problem);
+
+/// Samples along an axis: of the grid, or evenly so many of a sequence or cloud.
+double samples_along(const Problem& problem, std::size_t axis);
 
 } // namespace batten

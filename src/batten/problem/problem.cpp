@@ -43,12 +43,6 @@ void check_asked_for(const FitOptions& options) {
         throw InvalidInput("corners: samples are given, but the corners are not the given ones");
 }
 
-void check_corners(const std::vector<Index>& corners, Index samples) {
-    for (Index i : corners)
-        if (i < 0 || i >= samples)
-            throw InvalidInput(fmt::format("corner {}: the samples are 0 to {}", i, samples - 1));
-}
-
 /// Along an axis of a sequence or grid there are no more control points than samples.
 void check_counts(const Problem& problem) {
     if (problem.kind == SampleKind::cloud) return;
@@ -149,7 +143,7 @@ void complete_size(Problem& problem) {
     const bool open = (method == "auto" || method == "search") && options.method.moving.empty();
     if (problem.sized() || options.tolerance.stated()) return;
     if (options.smooth.wanted) {
-        problem.axes.control_points = smoothing_size(problem.samples, problem.axes);
+        problem.axes.control_points = smoothing_size(problem);
     } else if (open && options.stop.deviation > 0) {
         options.tolerance.value = std::exchange(options.stop.deviation, 0);
         if (options.stop.relative_gradient == 0)
@@ -188,7 +182,7 @@ Problem problem_of(const Samples& samples, const FitOptions& options) {
     check_net(problem);
     check_seam(options, problem.axes);
     check_smoothing(options.smooth, problem.axes);
-    check_corners(options.tolerance.corner_samples, samples.size());
+    for (Index i : options.tolerance.corner_samples) check_sample("corner", i, samples.size());
     check_held(options.hold, problem.samples, problem.kind, problem.axes);
     complete_size(problem);
     problem.parameters = chosen_parameters(problem);

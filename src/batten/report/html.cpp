@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstring>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 // The page that viewer/ builds, its data a placeholder.

@@ -4,6 +4,7 @@
 #include <batten/core/distinct.hpp>
 #include <batten/iterate/conjugate_gradients.hpp>
 #include <batten/iterate/iterate.hpp>
+#include <batten/problem/plan.hpp>
 #include <batten/samples/noise.hpp>
 #include <batten/solve/direct.hpp>
 
@@ -103,7 +104,6 @@ Parameters robust_parameters(const Problem& problem) {
 }
 
 std::vector<KnotVector> robust_knots(const Problem& problem, const Parameters& parameters) {
-    const Samples& samples = problem.samples;
     const std::vector<int>& degree = problem.axes.degree;
     const std::vector<Closure>& closures = problem.axes.closures;
     std::vector<KnotVector> axes;
@@ -111,13 +111,11 @@ std::vector<KnotVector> robust_knots(const Problem& problem, const Parameters& p
         const Index least = 2 * degree[k] + 1;
         const bool closed = closures[k] == Closure::closed;
         if (parameters.is_scattered()) {
-            const double along = std::pow(static_cast<double>(samples.size()),
-                                          1 / static_cast<double>(degree.size()));
             const PointSet box = bounding_box(parameters.scattered);
             const auto axis = static_cast<Index>(k);
-            axes.push_back(uniform_knots(degree[k], std::max(least, static_cast<Index>(along / 3)),
-                                         closed ? 0 : box(0, axis), closed ? 1 : box(1, axis),
-                                         closures[k]));
+            axes.push_back(uniform_knots(
+                degree[k], std::max(least, static_cast<Index>(samples_along(problem, k) / 3)),
+                closed ? 0 : box(0, axis), closed ? 1 : box(1, axis), closures[k]));
             continue;
         }
         const std::vector<double> t = without_repeats(parameters.axes[k]);

@@ -67,6 +67,11 @@ std::string_view to_string(SampleKind kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
+void check_sample(std::string_view what, Index i, Index samples) {
+    if (i < 0 || i >= samples)
+        throw InvalidInput(fmt::format("{} {}: the samples are 0 to {}", what, i, samples - 1));
+}
+
 void check(const Samples& samples) {
     check_shape(samples);
     check_finite(samples.points);

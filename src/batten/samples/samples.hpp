@@ -60,6 +60,9 @@ struct Samples {
 /// match, a coordinate is not finite (the sample is named) or a weight is not positive and finite.
 void check(const Samples& samples);
 
+/// Throws InvalidInput, `what` first, unless i is one of so many samples.
+void check_sample(std::string_view what, Index i, Index samples);
+
 /// Makes the grid of heights h(i, j) (m1 x m2, one coordinate) the points (i dx, j dy, h).
 Samples height_samples(const Points& heights, std::array<Index, 2> shape,
                        std::array<double, 2> spacing);

@@ -1,7 +1,7 @@
 #include <batten/core/grid_index.hpp>
 #include <batten/core/stopwatch.hpp>
 #include <batten/measure/deviation.hpp>
-#include <batten/problem/held.hpp>
+#include <batten/problem/plan.hpp>
 #include <batten/search/grid_trials.hpp>
 #include <batten/search/search.hpp>
 #include <batten/search/verdict_words.hpp>
@@ -16,17 +16,13 @@ namespace {
 
 /// Greatest number of control points along each axis, so that together they are at most `part` of
 /// the samples.
-std::vector<Index> most_per_axis(const Samples& samples, const Parameters& parameters,
-                                 const AxisPlan& plan, double part) {
-    const auto axes = static_cast<double>(plan.degree.size());
+std::vector<Index> most_per_axis(const Problem& problem, double part) {
+    const std::vector<int>& degree = problem.axes.degree;
+    const double share = std::pow(part, 1 / static_cast<double>(degree.size()));
     std::vector<Index> most;
-    for (std::size_t k = 0; k < plan.degree.size(); ++k) {
-        const double along = parameters.is_scattered()
-                                 ? std::pow(static_cast<double>(samples.size()), 1 / axes)
-                                 : static_cast<double>(samples.grid[k]);
-        most.push_back(std::max<Index>(plan.degree[k] + 1,
-                                       static_cast<Index>(std::pow(part, 1 / axes) * along)));
-    }
+    for (std::size_t k = 0; k < degree.size(); ++k)
+        most.push_back(
+            std::max<Index>(degree[k] + 1, static_cast<Index>(share * samples_along(problem, k))));
     return most;
 }
 
@@ -57,13 +53,12 @@ NotMet why_not(const GridTask& task, const GridWithin& found, Index allowed) {
 
 /// The account of a search: the certificate, the verdict and the ending; `allowed`: control points,
 /// where a limit was stated.
-FitReport judged(const GridTask& task, const GridWithin& found, Index allowed, double unit) {
+FitReport judged(const GridTask& task, const GridWithin& found, Index allowed, double deviation,
+                 double unit) {
     FitReport report;
     const Index n = GridIndex(free_shape(found.spline.axes())).size();
     const BetweenSamples& between = found.between;
     const bool met = found.met && between.excess <= wild_part;
-    const std::vector<double> off =
-        parametric_deviations(found.spline, task.samples, task.parameters);
     report.stages = found.stages;
     report.tolerance = *std::ranges::min_element(task.tolerance);
     report.termination = met ? Termination::tolerance_met : Termination::tolerance_not_met;
@@ -72,7 +67,7 @@ FitReport judged(const GridTask& task, const GridWithin& found, Index allowed, d
                          : not_met_words({.why = why_not(task, found, allowed),
                                           .allowed = allowed,
                                           .control_points = n,
-                                          .deviation = *std::ranges::max_element(off),
+                                          .deviation = deviation,
                                           .unit = unit});
     report.verdict += near_interpolation_words(n, task.samples.size(), 0, unit);
     if (!between.good)
@@ -94,7 +89,7 @@ Fitted surface_within(const Problem& problem) {
     const double part =
         limit > 0 ? std::min(1.0, static_cast<double>(limit) / static_cast<double>(samples.size()))
                   : most_part;
-    const std::vector<Index> most = most_per_axis(samples, problem.parameters, plan, part);
+    const std::vector<Index> most = most_per_axis(problem, part);
     const GridTask task{.samples = samples,
                         .parameters = problem.parameters,
                         .tolerance = tolerance,
@@ -110,7 +105,10 @@ Fitted surface_within(const Problem& problem) {
     if (found.spline.axis_count() == 0)
         throw SolverError(
             "no number of control points gives a solvable system: the grid's parameters coincide");
-    Fitted result{found.spline, problem.parameters, judged(task, found, limit, options.unit)};
+    std::vector<double> away = parametric_deviations(found.spline, samples, problem.parameters);
+    Fitted result{found.spline, problem.parameters,
+                  judged(task, found, limit, *std::ranges::max_element(away), options.unit),
+                  DeviationKind::parametric, std::move(away)};
     result.report.seconds.emplace_back("search", watch.lap());
     return result;
 }

@@ -15,7 +15,7 @@ namespace batten {
 namespace {
 
 /// Grows until the tolerance is met; the axis whose growth leaves the smaller error goes first.
-bool grow(GridSearch& search, std::vector<Index>& n, const std::vector<Index>& most) {
+bool grow(GridTrials& search, std::vector<Index>& n, const std::vector<Index>& most) {
     double worst = search(n);
     for (int round = 0; round < 200 && worst > 1; ++round) {
         const double factor = worst > 100 ? 1.5 : worst > 4 ? 1.25 : 1.08;
@@ -50,7 +50,7 @@ bool grow(GridSearch& search, std::vector<Index>& n, const std::vector<Index>& m
 
 /// Shrinks each axis by ever smaller steps while the tolerance holds, trading one axis for another
 /// at the end.
-void shrink(GridSearch& search, std::vector<Index>& n, const std::vector<Index>& least) {
+void shrink(GridTrials& search, std::vector<Index>& n, const std::vector<Index>& least) {
     for (Index step = std::max<Index>(1, *std::max_element(n.begin(), n.end()) / 8); step >= 1;
          step = step == 1 ? 0 : step / 2)
         for (bool any = true; any;) {
@@ -85,7 +85,7 @@ void shrink(GridSearch& search, std::vector<Index>& n, const std::vector<Index>&
 
 /// Surfaces: other lengths of the first axis, each with the fewest on the second that bisection
 /// finds.
-void rebalance(GridSearch& search, std::vector<Index>& n, const std::vector<Index>& least,
+void rebalance(GridTrials& search, std::vector<Index>& n, const std::vector<Index>& least,
                const std::vector<Index>& most) {
     if (n.size() != 2) return;
     const std::vector<Index> start = n;
@@ -106,7 +106,7 @@ void rebalance(GridSearch& search, std::vector<Index>& n, const std::vector<Inde
 }
 
 /// Makes each axis shorter by ever smaller steps while the tolerance holds.
-void take_off(GridSearch& search, std::vector<Index>& n, const std::vector<Index>& least) {
+void take_off(GridTrials& search, std::vector<Index>& n, const std::vector<Index>& least) {
     for (Index step = std::max<Index>(1, *std::max_element(n.begin(), n.end()) / 32); step >= 1;
          step = step == 1 ? 0 : step / 2)
         for (std::size_t k = 0; k < n.size(); ++k) {
@@ -117,7 +117,7 @@ void take_off(GridSearch& search, std::vector<Index>& n, const std::vector<Index
 }
 
 /// All axes shorter by one factor, the smallest that holds the tolerance, by bisection.
-void scale_down(GridSearch& search, std::vector<Index>& n, const std::vector<Index>& least) {
+void scale_down(GridTrials& search, std::vector<Index>& n, const std::vector<Index>& least) {
     const std::vector<Index> start = n;
     double missed = 0.7;
     double held = 1;
@@ -166,7 +166,7 @@ GridWithin fewest_sizes(const GridTask& task) {
     const auto& degree = task.degree;
     const std::vector<Index> least = least_size(task);
     std::vector<Index> n;
-    std::optional<GridSearch> best;
+    std::optional<GridTrials> best;
     std::vector<std::pair<std::string, Index>> stages;
     for (bool bent : {false, true}) {
         if (bent && task.parameters.is_scattered()) break; // no rows to take differences along
@@ -175,7 +175,7 @@ GridWithin fewest_sizes(const GridTask& task) {
             spreads.push_back(bent && task.closures[k] == Closure::open
                                   ? bend_spread(task.samples, t[k], k, degree[k])
                                   : even_spread(t[k]));
-        GridSearch search(task, std::move(spreads));
+        GridTrials search(task, std::move(spreads));
         std::vector<Index> size;
         for (std::size_t k = 0; k < degree.size(); ++k)
             size.push_back(std::min(task.most[k], std::max<Index>(least[k], 6)));
@@ -197,7 +197,7 @@ GridWithin fewest_sizes(const GridTask& task) {
         stages = {{"grown", grown}, {"shrunk", best->fewest}};
     }
     if (best->met && !task.parameters.is_scattered()) {
-        best->effort = GridSearch::Effort::equalised;
+        best->effort = GridTrials::Effort::equalised;
         scale_down(*best, n, least);
         take_off(*best, n, least);
         stages.emplace_back("equalised", best->fewest);

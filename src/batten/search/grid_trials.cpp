@@ -19,16 +19,16 @@ constexpr double reachable = 2.5; // times the tolerance: beyond it pushing does
 
 } // namespace
 
-GridSearch::GridSearch(const GridTask& task, std::vector<Spread> spreads)
+GridTrials::GridTrials(const GridTask& task, std::vector<Spread> spreads)
     : task_(task), spreads_(std::move(spreads)), ascending_(ascending(task.parameters)) {}
 
-double GridSearch::operator()(const std::vector<Index>& n) {
+double GridTrials::operator()(const std::vector<Index>& n) {
     auto& known = known_[effort == Effort::equalised ? 1 : 0];
     const auto found = known.find(n);
     return found != known.end() ? found->second : known[n] = attempt(n);
 }
 
-double GridSearch::attempt(const std::vector<Index>& n) {
+double GridTrials::attempt(const std::vector<Index>& n) {
     if (task_.cancelled && task_.cancelled()) throw Cancelled("the fit was cancelled");
     std::vector<KnotVector> axes;
     for (std::size_t k = 0; k < n.size(); ++k) {
@@ -55,7 +55,7 @@ double GridSearch::attempt(const std::vector<Index>& n) {
     }
 }
 
-GridSearch::Trial GridSearch::fitted(const std::vector<KnotVector>& axes,
+GridTrials::Trial GridTrials::fitted(const std::vector<KnotVector>& axes,
                                      const Samples& goals) const {
     const auto system = assemble(axes, goals, task_.parameters);
     Trial trial{Spline::from_free(axes, uncentred(solve(*system), system->centre())), {}, 0};
@@ -67,7 +67,7 @@ GridSearch::Trial GridSearch::fitted(const std::vector<KnotVector>& axes,
     return trial;
 }
 
-void GridSearch::equalise(const std::vector<KnotVector>& axes, Trial& best_trial) const {
+void GridTrials::equalise(const std::vector<KnotVector>& axes, Trial& best_trial) const {
     constexpr int rounds = 16;
     constexpr double calm = 0.7; // part of the tolerance below which a sample is left alone
     constexpr double push = 1;
@@ -94,12 +94,12 @@ void GridSearch::equalise(const std::vector<KnotVector>& axes, Trial& best_trial
     }
 }
 
-double GridSearch::between(const Trial& trial) const {
+double GridTrials::between(const Trial& trial) const {
     if (task_.between == GridTask::Between::left_aside || !std::isfinite(trial.worst)) return 0;
     return check_reached(task_, trial.spline, trial.worst).excess / wild_part;
 }
 
-void GridSearch::keep(Index count, Trial& trial) {
+void GridTrials::keep(Index count, Trial& trial) {
     const bool within = trial.worst <= 1;
     if (met ? !within || count >= fewest : !within && trial.worst >= best_worst) return;
     met = within;
@@ -110,7 +110,7 @@ void GridSearch::keep(Index count, Trial& trial) {
 
 /// Directly on a grid; on a cloud by preconditioned conjugate gradients, which hold still what no
 /// sample reaches.
-PointSet GridSearch::solve(const NormalSystem& system) const {
+PointSet GridTrials::solve(const NormalSystem& system) const {
     if (task_.hold.equalities())
         return solve_direct(
             system, held_constraints(system.axes(), task_.samples, task_.parameters, task_.hold)

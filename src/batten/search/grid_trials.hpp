@@ -10,9 +10,9 @@
 namespace batten {
 
 /// Fits with given numbers of control points and remembers the best that met the tolerance.
-class GridSearch {
+class GridTrials {
   public:
-    GridSearch(const GridTask& task, std::vector<Spread> spreads);
+    GridTrials(const GridTask& task, std::vector<Spread> spreads);
 
     /// Whether a fit that misses the tolerance by little is pushed towards its worst samples.
     enum class Effort { least_squares, equalised };

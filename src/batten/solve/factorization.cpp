@@ -4,7 +4,6 @@
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
-#include <fmt/format.h>
 
 namespace batten {
 

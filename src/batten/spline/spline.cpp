@@ -32,6 +32,11 @@ std::vector<Index> free_shape(std::span<const KnotVector> axes) {
     return shape;
 }
 
+std::string_view kind_name(const Spline& spline) {
+    constexpr std::string_view names[] = {"curve", "surface", "volume"};
+    return names[spline.axis_count() - 1];
+}
+
 Spline::Spline(std::vector<KnotVector> axes, PointSet control)
     : axes_(std::move(axes)), control_(std::move(control)) {
     if (axes_.empty() || axes_.size() > 3)

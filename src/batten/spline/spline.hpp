@@ -3,6 +3,7 @@
 #include <batten/basis/basis_functions.hpp>
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace batten {
@@ -41,6 +42,9 @@ class Spline {
 
 /// Free control points per axis.
 std::vector<Index> free_shape(std::span<const KnotVector> axes);
+
+/// What it is called by its number of axes: curve, surface or volume.
+std::string_view kind_name(const Spline& spline);
 
 /// Points at given parameters: scattered (m x axes), one row each. `orders` as in
 /// Spline::operator().

@@ -152,19 +152,22 @@ std::string Constraints::clash_words(std::span<const double> how, Index last) co
     return fmt::format("constraints contradict each other: {}", fmt::join(involved, ", "));
 }
 
-Constraints interpolate_samples(const std::vector<KnotVector>& axes, const Samples& samples,
-                                const Parameters& parameters, const std::vector<Index>& indices) {
-    Constraints constraints(samples.dim());
+void check_interpolated(const std::vector<Index>& indices, Index samples) {
     std::set<Index> seen;
     for (Index i : indices) {
-        if (i < 0 || i >= samples.size())
-            throw InvalidInput(fmt::format("interpolated sample {}: the samples are 0 to {}", i,
-                                           samples.size() - 1));
+        check_sample("interpolated sample", i, samples);
         if (!seen.insert(i).second)
             throw InvalidInput(fmt::format("interpolated sample {} is given twice", i));
+    }
+}
+
+Constraints interpolate_samples(const std::vector<KnotVector>& axes, const Samples& samples,
+                                const Parameters& parameters, const std::vector<Index>& indices) {
+    check_interpolated(indices, samples.size());
+    Constraints constraints(samples.dim());
+    for (Index i : indices)
         constraints.add(axes, parameter_of(parameters, i), {}, samples.points[i],
                         fmt::format("sample {}", i));
-    }
     return constraints;
 }
 

@@ -67,6 +67,9 @@ class Constraints {
     PointSet values_;
 };
 
+/// Throws InvalidInput for an index that is not of so many samples, or given twice.
+void check_interpolated(const std::vector<Index>& indices, Index samples);
+
 /// The samples with the given indices as position constraints at their own parameters.
 /// Throws InvalidInput for an index out of range or given twice.
 Constraints interpolate_samples(const std::vector<KnotVector>& axes, const Samples& samples,

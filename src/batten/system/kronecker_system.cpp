@@ -4,8 +4,6 @@
 #include <batten/core/vector_clones.hpp>
 #include <batten/system/roughness.hpp>
 
-#include <algorithm>
-
 namespace batten {
 
 namespace {

@@ -3,8 +3,6 @@
 #include <batten/system/factored_system.hpp>
 #include <batten/system/stencil_system.hpp>
 
-#include <fmt/format.h>
-
 namespace batten {
 
 namespace {
