@@ -111,7 +111,9 @@ class Truth(InFolder):
             self.judge(spoiled, noise / 5, spline, summary, status)
             self.assertLess(abs(summary["noise_level"] / noise - 1), 0.15)
             self.assertIn("noise level", summary["verdict"])
-            self.assertLess(spline["control_shape"][0], 20)  # it follows the curve, not the noise
+            if status == 4:  # else the tolerance stated is met, noise and all: so few samples leave room
+                self.assertLess(spline["control_shape"][0], 20)  # it follows the curve, not the noise
+            self.assertTrue(status == 4 or count == 200, (count, status))
         walk = np.cumsum(rng.normal(size=(300, 2)), axis=0)  # no part of it is noise
         spline, summary, status = self.fit(walk, "--tolerance", 0.01)
         self.assertEqual(status, 4)

@@ -5,19 +5,61 @@
 #include <batten/samples/samples.hpp>
 #include <batten/search/curve_corners.hpp>
 #include <batten/search/curve_knots.hpp>
+#include <batten/search/curve_rising.hpp>
+#include <batten/search/curve_spread.hpp>
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/search.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace batten {
 
 namespace {
 
-/// Refines without corners and with them, and thins out what took fewer control points.
-CurveWithin refined_and_thinned(CurveTask& task, const ToleranceOptions& options, Index most) {
+Index controls(const CurveWithin& fit) {
+    return fit.trial.knots.free_count();
+}
+
+constexpr Index few_enough = 40; // control points for which a second search takes little time
+
+/// A met fit's rivals that rise from the fewest knots, and what can be squeezed out of the best.
+void rise_and_squeeze(const CurveTask& task, CurveWithin& best) {
+    for (int smoothing : {evenly, 12}) {
+        CurveWithin again = risen(task, controls(best) - 1, smoothing);
+        if (!again.met) continue;
+        again.closest = best.closest;
+        best = std::move(again);
+    }
+    if (controls(best) <= few_enough) squeeze(task, best);
+}
+
+/// Whether a met fit is too wild between the samples to be handed out.
+bool is_wild(const CurveTask& task, const CurveWithin& fit) {
+    return between(task, fit.trial) > wild_part;
+}
+
+/// What rises from the fewest knots, where refining missed the tolerance or is wild.
+void rise_instead(const CurveTask& task, Index most, CurveWithin& best) {
+    if (best.met && !is_wild(task, best)) return;
+    CurveTask rising = task;
+    for (double strays : {1.0, wild_part}) {
+        rising.between = strays;
+        for (int smoothing : {evenly, 12}) {
+            CurveWithin again = risen(rising, most, smoothing);
+            best.closest.see(task, again.closest);
+            if (!again.met) continue;
+            again.closest = best.closest;
+            best = std::move(again);
+            return;
+        }
+    }
+}
+
+/// Refines without corners and with them: what took fewer control points, or came nearer.
+CurveWithin refined_with_corners(CurveTask& task, const ToleranceOptions& options, Index most) {
     task.fixed = fixed_samples(task);
     CurveWithin best = refined(task, most);
     if (options.corners == Corners::automatic) {
@@ -28,9 +70,8 @@ CurveWithin refined_and_thinned(CurveTask& task, const ToleranceOptions& options
             CurveWithin other = refined(cornered, most);
             ClosestSeen closest = best.closest;
             closest.see(cornered, other.closest);
-            const auto count = [](const CurveWithin& fit) { return fit.trial.knots.free_count(); };
             const bool better = other.met != best.met ? other.met
-                                : other.met           ? count(other) < count(best)
+                                : other.met           ? controls(other) < controls(best)
                                                       : other.trial.worst < best.trial.worst;
             if (better) {
                 best = std::move(other);
@@ -40,11 +81,39 @@ CurveWithin refined_and_thinned(CurveTask& task, const ToleranceOptions& options
             best.closest = std::move(closest);
         }
     }
-    // what is wild is searched again before anything is taken out
-    if (!best.met) return best;
-    const bool wild = task.roughness == 0 && between(task, best.trial) > wild_part;
-    if (!wild) thin_out(task, best);
     return best;
+}
+
+/// The fewest control points from one search: refined or risen, thinned out, squeezed.
+CurveWithin refined_and_thinned(CurveTask& task, const ToleranceOptions& options, Index most) {
+    const bool few = task.samples.size() <= few_samples;
+    CurveWithin best = refined_with_corners(task, options, most);
+    if (few) rise_instead(task, most, best);
+    // what is wild is searched again before anything is taken out
+    if (!best.met || (task.roughness == 0 && is_wild(task, best))) return best;
+    thin_out(task, best);
+    if (few) rise_and_squeeze(task, best);
+    return best;
+}
+
+/// Searches for tighter tolerances, too: a curve found there may lead to fewer control points.
+void look_beyond(CurveTask& task, const ToleranceOptions& options, Index most, CurveWithin& best) {
+    for (double part : {0.3, 0.1}) {
+        if (!best.met || controls(best) > few_enough || task.samples.size() > few_samples) return;
+        CurveTask tighter = task;
+        for (double& t : tighter.tolerance) t *= part;
+        CurveWithin again =
+            refined_and_thinned(tighter, options, std::min(most, controls(best) * 3 / 2 + 10));
+        if (!again.met) return;
+        again.trial = rescaled(again.trial, part);
+        if (between(task, again.trial) > std::max(1.0, between(task, best.trial))) continue;
+        squeeze(task, again);
+        if (controls(again) >= controls(best)) continue;
+        again.closest = best.closest;
+        best = std::move(again);
+        task.corners = std::move(tighter.corners);
+        task.fixed = std::move(tighter.fixed);
+    }
 }
 
 /// The integral of the squared second derivative that the samples show where they bend by more
@@ -75,14 +144,14 @@ double shown_roughness(const CurveTask& task) {
 /// samples show of it costs a small part of the tolerance.
 void calm_down(CurveTask& task, const ToleranceOptions& options, Index most, CurveWithin& found) {
     if (!found.trial.control.empty() && found.met && between(task, found.trial) <= 1) return;
-    const bool unthinned = found.met && between(task, found.trial) > wild_part;
+    const bool unthinned = found.met && is_wild(task, found);
     const double tolerance = tightest(task);
     const double shown = std::max(shown_roughness(task), tolerance * tolerance);
     const bool noisy =
         noise_bound(task.samples.points) >= 0.3 * tolerance && task.samples.size() <= few_samples;
     bool calmed = false;
     for (double part : {0.1, 1.0}) {
-        if (!noisy || (calmed && between(task, found.trial) <= wild_part)) break;
+        if (!noisy || (calmed && !is_wild(task, found))) break;
         CurveTask calmer = task;
         calmer.roughness = part * tolerance * tolerance / shown;
         CurveWithin again = refined_and_thinned(calmer, options, most);
@@ -100,8 +169,6 @@ void calm_down(CurveTask& task, const ToleranceOptions& options, Index most, Cur
     found.closest.see(task, found.trial);
 }
 
-constexpr Index few_enough = 40; // control points for which a second search takes little time
-
 /// A curve that bends more often than the samples show is searched again, without these bends.
 void take_out_inflections(const CurveTask& task, const ToleranceOptions& options, Index most,
                           CurveWithin& found) {
@@ -113,28 +180,32 @@ void take_out_inflections(const CurveTask& task, const ToleranceOptions& options
         return; // it bends with the samples' noise
     CurveTask shaped = task;
     shaped.most_inflections = shown;
-    const auto accepted = [&](CurveWithin again) {
-        const double strays = std::max(1.0, between(task, found.trial));
-        if (!again.met || between(task, again.trial) > strays) return false;
-        found = std::move(again);
-        return true;
+    const double strays = std::max(1.0, between(task, found.trial));
+    const Index before = controls(found);
+    std::optional<CurveWithin> fewest;
+    const auto consider = [&](CurveWithin again) {
+        if (!again.met || between(task, again.trial) > strays) return;
+        if (!fewest || controls(again) < controls(*fewest)) fewest = std::move(again);
     };
     CurveWithin again = refined_further(shaped, found, most);
     if (again.met) thin_out(shaped, again);
-    if (accepted(std::move(again)) || found.trial.knots.free_count() > few_enough) return;
-    accepted(refined_and_thinned(shaped, options, most)); // from nothing: other knots may do
+    consider(std::move(again));
+    if (before <= few_enough) // from nothing: other knots may do
+        consider(refined_and_thinned(shaped, options, most));
+    if (fewest) found = std::move(*fewest);
 }
 
 } // namespace
 
 CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index most) {
     CurveWithin found = refined_and_thinned(task, options, most);
+    look_beyond(task, options, most, found);
     calm_down(task, options, most, found);
     const ClosestSeen closest = found.closest;
     take_out_inflections(task, options, most, found);
     found.closest = closest;
     found.closest.see(task, found.trial);
-    found.met = found.met && between(task, found.trial) <= wild_part;
+    found.met = found.met && !is_wild(task, found);
     return found;
 }
 

@@ -2,6 +2,7 @@
 
 #include <batten/basis/place_knots.hpp>
 #include <batten/measure/between_samples.hpp>
+#include <batten/system/collocation.hpp>
 
 #include <algorithm>
 
@@ -45,12 +46,37 @@ std::vector<double> lasting_knots(const CurveTask& task) {
     return result;
 }
 
+std::size_t free_knots(const CurveTask& task, const CurveTrial& trial) {
+    const std::size_t all = interior_knots(trial.knots).size();
+    return all - std::min(all, lasting_knots(task).size()); // some of these may have been taken out
+}
+
+bool makes_curve(const CurveTask& task, const std::vector<double>& interior) {
+    return task.closure == Closure::open || static_cast<int>(interior.size()) >= task.degree;
+}
+
 std::vector<double> with_lasting_knots(const CurveTask& task, std::vector<double> interior) {
     const std::vector<double> lasting = lasting_knots(task);
     for (double t : lasting) std::erase(interior, t);
     interior.insert(interior.end(), lasting.begin(), lasting.end());
     std::ranges::sort(interior);
     return interior;
+}
+
+KnotVector first_knots(const CurveTask& task) {
+    if (task.closure == Closure::open)
+        return knots_around(task.degree, with_lasting_knots(task, {}), task.parameters.front(),
+                            task.parameters.back());
+    const auto m = static_cast<Index>(task.parameters.size());
+    KnotVector knots;
+    for (Index n = std::min<Index>(2 * task.degree + 2, m - 1); n > task.degree; --n) {
+        const KnotVector spread =
+            knots_from_parameters(task.parameters, task.degree, n, Closure::closed);
+        knots = knots_around(task.degree, with_lasting_knots(task, interior_knots(spread)), 0, 1,
+                             Closure::closed);
+        if (!undetermined(knots, task.parameters)) break;
+    }
+    return knots;
 }
 
 double between(const CurveTask& task, const CurveTrial& trial) {

@@ -24,8 +24,18 @@ KnotVector with_interior(const CurveTask& task, const KnotVector& old,
 /// continuity takes at a closed curve's seam.
 std::vector<double> lasting_knots(const CurveTask& task);
 
+/// Interior knots of a trial besides those that last.
+std::size_t free_knots(const CurveTask& task, const CurveTrial& trial);
+
+/// Whether interior knots are enough: a closed curve has degree + 1 control points at least.
+bool makes_curve(const CurveTask& task, const std::vector<double>& interior);
+
 /// Adds these to ascending others.
 std::vector<double> with_lasting_knots(const CurveTask& task, std::vector<double> interior);
+
+/// Few knots to start from, between the parameters on a closed curve, and those that last: as many
+/// as the samples determine.
+KnotVector first_knots(const CurveTask& task);
 
 /// Part of what is allowed between samples that the trial uses, at most 1 being good.
 double between(const CurveTask& task, const CurveTrial& trial);

@@ -115,24 +115,6 @@ struct Refinement {
                   ///< the tolerance
 };
 
-/// Few knots to start from, between the parameters on a closed curve, and those that last: as many
-/// as the samples determine.
-KnotVector first_knots(const CurveTask& task) {
-    if (task.closure == Closure::open)
-        return knots_around(task.degree, with_lasting_knots(task, {}), task.parameters.front(),
-                            task.parameters.back());
-    const auto m = static_cast<Index>(task.parameters.size());
-    KnotVector knots;
-    for (Index n = std::min<Index>(2 * task.degree + 2, m - 1); n > task.degree; --n) {
-        const KnotVector spread =
-            knots_from_parameters(task.parameters, task.degree, n, Closure::closed);
-        knots = knots_around(task.degree, with_lasting_knots(task, interior_knots(spread)), 0, 1,
-                             Closure::closed);
-        if (!undetermined(knots, task.parameters)) break;
-    }
-    return knots;
-}
-
 /// Refines until the tolerance is met, or the round that came nearest.
 CurveTrial refine_by(const Refinement& way, const CurveTask& task, Index most,
                      ClosestSeen& closest) {

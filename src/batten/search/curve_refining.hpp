@@ -26,6 +26,10 @@ CurveWithin refined(const CurveTask& task, Index most_control_points);
 CurveWithin refined_further(const CurveTask& task, const CurveWithin& fit,
                             Index most_control_points);
 
+/// Takes out knots one by one, the least significant first; one that cannot go is not tried again
+/// until a neighbour has gone. Bounded in trials.
+void thin_one_by_one(const CurveTask& task, CurveTrial& trial);
+
 /// Second half: spreads fewer knots anew, then takes out those that are not needed, batch by batch
 /// and one by one. Bounded in trials.
 void thin_out(const CurveTask& task, CurveWithin& fit);

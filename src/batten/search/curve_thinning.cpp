@@ -1,6 +1,8 @@
 #include <batten/search/curve_refining.hpp>
 
 #include <batten/search/curve_knots.hpp>
+#include <batten/search/curve_spread.hpp>
+#include <batten/search/search.hpp>
 #include <batten/system/collocation.hpp>
 
 #include <algorithm>
@@ -38,8 +40,7 @@ std::vector<double> knot_significance(const CurveTask& task, const CurveTrial& t
 /// Tries the trial without some of its knots.
 bool without(const CurveTask& task, CurveTrial& trial, const std::vector<double>& interior,
              int rounds) {
-    if (task.closure == Closure::closed && static_cast<int>(interior.size()) < task.degree)
-        return false; // a closed curve has degree + 1 control points at least
+    if (!makes_curve(task, interior)) return false;
     CurveTrial attempt = trial;
     attempt.knots = with_interior(task, trial.knots, interior);
     attempt.weights = first_weights(task);
@@ -50,71 +51,12 @@ bool without(const CurveTask& task, CurveTrial& trial, const std::vector<double>
     return true;
 }
 
-constexpr int evenly = -1;
-
-/// `count` interior knots spread so that each span gets an equal part of |f^(p+1)|^(1/(p+1)),
-/// estimated from the jumps of the highest derivative [deBoor1978, chapter XII], which are noisy:
-/// `smoothing` passes of averaging with the neighbours; or evenly.
-std::vector<double> spread(const CurveTask& task, const CurveTrial& trial, std::size_t count,
-                           int smoothing) {
-    if (smoothing == evenly) {
-        std::vector<double> interior;
-        for (std::size_t k = 1; k <= count; ++k)
-            interior.push_back(trial.knots.begin() + trial.knots.length() * static_cast<double>(k) /
-                                                         static_cast<double>(count + 1));
-        return interior;
-    }
-    const Spline spline = spline_of(trial);
-    const std::vector<double> breaks = trial.knots.breakpoints();
-    const std::array order{task.degree};
-    std::vector<std::vector<double>> top; // the highest derivative, constant on each span
-    for (std::size_t b = 0; b + 1 < breaks.size(); ++b)
-        top.push_back(spline(std::array{(breaks[b] + breaks[b + 1]) / 2}, order));
-    std::vector<double> jump(breaks.size(), 0);
-    for (std::size_t b = 1; b + 1 < breaks.size(); ++b)
-        jump[b] = distance(top[b - 1], top[b]) / (breaks[b + 1] - breaks[b - 1]);
-    for (std::size_t b = 1; b + 1 < breaks.size();
-         ++b) { // bends count in parts of the tolerance there
-        const auto at =
-            std::ranges::lower_bound(trial.parameters, breaks[b]) - trial.parameters.begin();
-        jump[b] /=
-            task.tolerance[static_cast<std::size_t>(std::min<Index>(at, task.samples.size() - 1))];
-    }
-    jump.front() = jump[std::min<std::size_t>(1, breaks.size() - 1)];
-    jump.back() = jump[breaks.size() - 2];
-    for (int pass = 0; pass < smoothing; ++pass) {
-        const std::vector<double> before = jump;
-        for (std::size_t b = 1; b + 1 < jump.size(); ++b)
-            jump[b] = (before[b - 1] + 2 * before[b] + before[b + 1]) / 4;
-    }
-    std::vector<double> mass{0};
-    const double mean = [&] {
-        double sum = 0;
-        for (double x : jump) sum += x;
-        return sum / static_cast<double>(jump.size());
-    }();
-    for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
-        const double density =
-            std::pow((jump[b] + jump[b + 1]) / 2 + 1e-3 * mean, 1.0 / (task.degree + 1));
-        mass.push_back(mass.back() + density * (breaks[b + 1] - breaks[b]));
-    }
-    std::vector<double> interior;
-    std::size_t b = 0;
-    for (std::size_t k = 1; k <= count; ++k) {
-        const double wanted = mass.back() * static_cast<double>(k) / static_cast<double>(count + 1);
-        while (b + 2 < breaks.size() && mass[b + 1] < wanted) ++b;
-        interior.push_back(breaks[b] + (breaks[b + 1] - breaks[b]) * (wanted - mass[b]) /
-                                           (mass[b + 1] - mass[b]));
-    }
-    return interior;
-}
-
 /// Spreads fewer and fewer knots anew, by bisection, as long as the tolerance is met; each way of
 /// spreading in turn.
 void spread_out(const CurveTask& task, CurveTrial& trial) {
     const CurveTrial source = trial;
     for (int smoothing : {1, 12, evenly}) {
-        std::size_t met = interior_knots(trial.knots).size() - lasting_knots(task).size();
+        std::size_t met = free_knots(task, trial);
         std::size_t missed =
             static_cast<std::size_t>(task.closure == Closure::closed ? task.degree : 0);
         while (met > missed + 1) {
@@ -170,8 +112,8 @@ bool is_lasting(const CurveTask& task, double knot) {
     return std::ranges::binary_search(lasting, knot);
 }
 
-/// Takes out knots one by one, the least significant first. A knot that cannot go is not tried
-/// again until a neighbour has gone.
+} // namespace
+
 void thin_one_by_one(const CurveTask& task, CurveTrial& trial) {
     std::vector<bool> needed(interior_knots(trial.knots).size(), false);
     for (bool any = true; any;) {
@@ -202,14 +144,11 @@ void thin_one_by_one(const CurveTask& task, CurveTrial& trial) {
     }
 }
 
-} // namespace
-
 void thin_out(const CurveTask& given, CurveWithin& fit) {
     CurveTask task = given;
     CurveTrial& trial = fit.trial;
-    task.between = std::max(
-        1.0, between(task,
-                     trial)); // where the samples themselves go back and forth no curve is within 1
+    // where the samples themselves go back and forth no curve is within 1; what is wild gets tame
+    task.between = std::clamp(between(task, trial), 1.0, wild_part);
     spread_out(task, trial);
     fit.stages.emplace_back("spread", trial.knots.free_count());
     thin_in_batches(task, trial);

@@ -2,6 +2,7 @@
 
 #include <batten/basis/place_knots.hpp>
 #include <batten/problem/held.hpp>
+#include <batten/search/curve_across.hpp>
 #include <batten/shape/polygon.hpp>
 #include <batten/solve/direct.hpp>
 #include <batten/solve/keep_shape.hpp>
@@ -12,24 +13,34 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace batten {
 
 namespace {
 
-PointSet solve(const CurveTask& task, const CurveTrial& trial) {
+constexpr Index few_exact = 40; // constraints: their dense equations cost little
+
+/// Control points on the trial's knots: of the samples' distances at their parameters, or across
+/// the curve of the round before where there is one and nothing but positions must hold.
+PointSet solve(const CurveTask& task, const CurveTrial& trial,
+               const std::optional<CurvePieces>& last) {
     const auto origin = task.samples.points[0];
-    BandedSystem system(trial.knots, {origin.begin(), origin.end()});
-    system.add(trial.parameters, task.samples.points, trial.weights);
-    if (task.roughness > 0) system.add_roughness(task.roughness, 2);
+    const std::vector<double> centre(origin.begin(), origin.end());
     Constraints exact(task.samples.dim());
     if (task.hold.equalities())
         exact = held_constraints({trial.knots}, task.samples, {{trial.parameters}, {}}, task.hold)
-                    .centred(system.centre());
+                    .centred(centre);
+    const bool across = last && task.samples.dim() > 1 && task.most_inflections < 0 &&
+                        exact.directions().empty() && exact.size() <= few_exact;
+    if (across) return solve_across(task, trial, *last, exact);
+    BandedSystem system(trial.knots, centre);
+    system.add(trial.parameters, task.samples.points, trial.weights);
+    if (task.roughness > 0) system.add_roughness(task.roughness, 2);
     const PointSet control = task.most_inflections >= 0
                                  ? solve_with_inflections(system, exact, task.most_inflections)
                                  : solve_direct(system, exact);
-    return uncentred(control, system.centre());
+    return uncentred(control, centre);
 }
 
 /// Makes the samples that must be hit look far out, so that knots go to them.
@@ -49,8 +60,7 @@ void correct_parameters(const CurveTask& task, const CurvePieces& pieces, CurveT
     const std::size_t m = t.size();
     const bool open = task.closure == Closure::open;
     for (std::size_t i = 0; i < m; ++i) {
-        if (open && (i == 0 || i + 1 == m)) continue; // the ends stay at the ends
-        if (std::ranges::binary_search(task.fixed, static_cast<Index>(i))) continue;
+        if (parameter_stays(task, static_cast<Index>(i))) continue;
         const CurvePoint at = pieces(old[i]);
         double slope = 0;
         double curvature = 0;
@@ -136,13 +146,15 @@ void shift_knots(const CurveTask& task, CurveTrial& trial) {
 
 } // namespace
 
-bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift) {
+bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift,
+            Patience patience) {
+    std::optional<CurvePieces> last;
     CurveTrial best;
     best.worst = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds; ++round) {
         if (task.cancelled && task.cancelled()) throw Cancelled("the fit was cancelled");
         try {
-            trial.control = solve(task, trial);
+            trial.control = solve(task, trial, last);
         } catch (const SolverError&) { // samples crowd at one side of a span
             trial.worst = std::numeric_limits<double>::infinity();
             break;                                     // the round before stands
@@ -152,13 +164,13 @@ bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shif
             mark_held(task, trial);
             break;
         }
-        const CurvePieces pieces(trial.knots, trial.control);
-        correct_parameters(task, pieces, trial);
-        measure(task, pieces, trial);
+        last.emplace(trial.knots, trial.control);
+        correct_parameters(task, *last, trial);
+        measure(task, *last, trial);
         if (trial.worst < best.worst) best = trial;
         if (trial.worst <= 1 || !std::isfinite(trial.worst)) break;
-        if (round >= 3 && best.worst > 4) break; // too far to get there by weights
-        if (round >= 7 && best.worst > 1.5) break;
+        const bool hopeless = (round >= 3 && best.worst > 4) || (round >= 7 && best.worst > 1.5);
+        if (hopeless && patience == Patience::while_in_reach) break;
         if (round >= 2) reweigh(trial);
         if (shift == KnotShift::allowed && round % 2 == 1) shift_knots(task, trial);
     }

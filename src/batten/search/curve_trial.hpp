@@ -34,7 +34,7 @@ struct CurveTask {
     /// Samples whose parameters stay, ascending: corners, the seam, those with a tangent.
     std::vector<Index> fixed{};
     /// Greatest part of what is allowed between samples (measure/between_samples.hpp) that a
-    /// thinner curve may use.
+    /// thinner or risen curve may use.
     double between = 1;
     /// FitOptions::unit, for words.
     double unit = 1;
@@ -62,12 +62,17 @@ struct CurveTrial {
 /// Whether `settle` may shift knots towards where the error is.
 enum class KnotShift { none, allowed };
 
-/// Least-squares fit on the trial's knots, with parameters corrected by one closest-point step a
-/// round (in order, never past a neighbour's half-way) and weights moved towards the samples that
-/// are furthest out (Lawson's iteration), for at most `rounds` rounds or until every sample is
-/// within tolerance. Leaves the best round's state. Returns whether the tolerance is met. Throws
+/// Whether `settle` goes on where the weights alone will hardly bring the samples within tolerance.
+enum class Patience { while_in_reach, to_the_end };
+
+/// Least-squares fit on the trial's knots, from the second round on of the distances across the
+/// curve (search/curve_across.hpp), with parameters corrected by one closest-point step a round (in
+/// order, never past a neighbour's half-way) and weights moved towards the samples that are
+/// furthest out (Lawson's iteration), for at most `rounds` rounds or until every sample is within
+/// tolerance. Leaves the best round's state. Returns whether the tolerance is met. Throws
 /// SolverError when the samples do not determine the control points.
-bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift);
+bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift,
+            Patience patience = Patience::while_in_reach);
 
 /// Whether the control polygon bends no more often than it may.
 bool shape_kept(const CurveTask& task, const CurveTrial& trial);
