@@ -133,7 +133,7 @@ struct SmoothOptions {
 /// What samples far from all others may do.
 enum class Outliers {
     count,     ///< they count like any other
-    set_aside, ///< they are found by a robust fit, listed, and not fitted
+    set_aside, ///< they are found (robust/outliers.hpp), listed, and not fitted
 };
 
 /// Everything a fit can be told; the defaults are what `batten fit` does.

@@ -3,6 +3,7 @@
 #include <batten/measure/deviation.hpp>
 #include <batten/problem/subset.hpp>
 #include <batten/robust/robust_fit.hpp>
+#include <batten/robust/sequence_outliers.hpp>
 #include <batten/samples/noise.hpp>
 
 #include <algorithm>
@@ -14,11 +15,18 @@ namespace batten {
 
 namespace {
 
-/// Median residual of the samples around each one: up to 4 places away along a sequence, 2 along
-/// a grid's axes.
+double upper_quartile(std::vector<double> values) {
+    if (values.empty()) return 0;
+    const auto at = values.begin() + static_cast<Index>(values.size() * 3 / 4);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+/// What three quarters of the samples around each one have at most: up to 2 places away along a
+/// grid's axes. A crease is a quarter of them.
 std::vector<double> around(const Samples& samples, const std::vector<double>& residual) {
     const GridIndex grid(samples.shape());
-    const Index reach = grid.axis_count() == 1 ? 4 : 2;
+    constexpr Index reach = 2;
     std::vector<double> result(residual.size());
     for_each_chunk(samples.size(), [&](Index i) {
         const GridIndex::Place here = grid.place(i);
@@ -34,7 +42,7 @@ std::vector<double> around(const Samples& samples, const std::vector<double>& re
             const Index j = first + grid.at(place);
             if (j != i) values.push_back(residual[static_cast<std::size_t>(j)]);
         });
-        result[static_cast<std::size_t>(i)] = median(std::move(values));
+        result[static_cast<std::size_t>(i)] = upper_quartile(std::move(values));
     });
     return result;
 }
@@ -52,27 +60,68 @@ std::vector<double> around(const Parameters& parameters, const std::vector<KnotV
     const auto m = static_cast<Index>(residual.size());
     for (Index i = 0; i < m; ++i)
         cells[cell_of(i)].push_back(residual[static_cast<std::size_t>(i)]);
-    std::map<std::array<Index, 3>, double> medians;
-    for (auto& [cell, values] : cells) medians[cell] = median(std::move(values));
+    std::map<std::array<Index, 3>, double> quartile;
+    for (auto& [cell, values] : cells) quartile[cell] = upper_quartile(std::move(values));
     std::vector<double> result;
-    for (Index i = 0; i < m; ++i) result.push_back(medians[cell_of(i)]);
+    for (Index i = 0; i < m; ++i) result.push_back(quartile[cell_of(i)]);
     return result;
 }
 
-std::vector<bool> protected_samples(const Samples& samples, const HoldOptions& hold) {
-    std::vector<bool> result(static_cast<std::size_t>(samples.size()), false);
-    for (Index i : hold.interpolate) result[static_cast<std::size_t>(i)] = true;
-    for (const HeldTangent& tangent : hold.tangents)
-        result[static_cast<std::size_t>(tangent.sample)] = true;
-    return result;
-}
-
-/// The residual that a sample may have in any case: its tolerance, or a small part of the data's
-/// size.
+/// What a sample may be off in any case: its tolerance, or a small part of the data's size;
+/// anything where something is to hold.
 std::vector<double> least_residuals(const Problem& problem) {
-    if (!problem.tolerance.empty()) return problem.tolerance;
-    return std::vector<double>(static_cast<std::size_t>(problem.samples.size()),
-                               1e-4 * problem.size);
+    std::vector<double> least = problem.tolerance;
+    if (least.empty())
+        least.assign(static_cast<std::size_t>(problem.samples.size()), 1e-4 * problem.size);
+    constexpr double free = std::numeric_limits<double>::infinity();
+    const HoldOptions& hold = problem.options.hold;
+    for (Index i : hold.interpolate) least[static_cast<std::size_t>(i)] = free;
+    for (const HeldTangent& tangent : hold.tangents)
+        least[static_cast<std::size_t>(tangent.sample)] = free;
+    return least;
+}
+
+/// The samples along an axis; numbers become points over their parameters.
+PointSet points_along(const Problem& problem, std::size_t axis, const GridIndex::Strand& strand) {
+    const Points& q = problem.samples.points;
+    const bool numbers = q.dim() == 1;
+    const std::vector<double>& t = problem.parameters.axes[axis];
+    PointSet result(strand.count, q.dim() + (numbers ? 1 : 0));
+    for (Index j = 0; j < strand.count; ++j) {
+        std::ranges::copy(q[strand[j]], result[j].begin());
+        if (numbers) result(j, 1) = problem.size * (t[static_cast<std::size_t>(j)] - t.front());
+    }
+    return result;
+}
+
+/// Along how many axes of enough samples each sample of a sequence or grid disagrees with its
+/// neighbours.
+struct Disagreement {
+    std::vector<int> axes;
+    int most = 0;
+};
+
+Disagreement disagreement(const Problem& problem) {
+    const std::vector<double> least = least_residuals(problem);
+    const GridIndex grid(problem.samples.shape());
+    Disagreement result{std::vector<int>(least.size(), 0)};
+    for (std::size_t k = 0; k < grid.axis_count(); ++k) {
+        if (grid.length(k) < fewest_in_sequence) continue;
+        ++result.most;
+        std::vector<GridIndex::Strand> strands;
+        grid.for_each_strand(k,
+                             [&](const GridIndex::Strand& strand) { strands.push_back(strand); });
+        for_each_chunk(static_cast<Index>(strands.size()), [&](Index s) {
+            const GridIndex::Strand& strand = strands[static_cast<std::size_t>(s)];
+            std::vector<double> theirs;
+            for (Index j = 0; j < strand.count; ++j)
+                theirs.push_back(least[static_cast<std::size_t>(strand[j])]);
+            for (Index j : sequence_outliers(points_along(problem, k, strand),
+                                             problem.axes.closures[k], theirs))
+                ++result.axes[static_cast<std::size_t>(strand[j])];
+        });
+    }
+    return result;
 }
 
 /// A robust fit, its values at the samples, and which samples are far from it.
@@ -98,15 +147,14 @@ Judgement judge(const Problem& problem) {
                                          ? around(parameters, knots, residual)
                                          : around(samples, residual);
     result.usual = 6 * 1.4826 * median(residual);
-    const std::vector<bool> held = protected_samples(samples, problem.options.hold);
     for (std::size_t i = 0; i < residual.size(); ++i)
-        if (!held[i] && residual[i] > std::max({least[i], result.usual, 5 * near[i]}))
+        if (residual[i] > std::max({least[i], result.usual, 5 * near[i]}))
             result.outliers.push_back(static_cast<Index>(i));
     return result;
 }
 
-/// Far samples stretch the chords that parameters come from, and take neighbours along: fits
-/// without those judged first tell which of all samples are far indeed.
+/// Far samples of a cloud take neighbours along: fits without those judged first tell which of all
+/// samples are far indeed.
 std::vector<Index> confirmed(std::vector<Index> outliers, const Problem& problem) {
     const std::vector<double> least = least_residuals(problem);
     constexpr int most_rounds = 5;
@@ -147,15 +195,43 @@ Problem with_values(Problem problem, const std::vector<Index>& outliers, const P
     return problem;
 }
 
+/// A curve's outliers disagree with their neighbours.
+std::vector<Index> of_sequence(const Problem& problem) {
+    const Disagreement disagree = disagreement(problem);
+    std::vector<Index> result;
+    for (std::size_t i = 0; i < disagree.axes.size(); ++i)
+        if (disagree.axes[i] > 0) result.push_back(static_cast<Index>(i));
+    return result;
+}
+
+/// A grid's disagree along all axes, or along one and are far from the robust fit, which bends
+/// where outliers are at its edge.
+std::vector<Index> of_grid(const Problem& problem, const std::vector<Index>& far) {
+    const Disagreement disagree = disagreement(problem);
+    if (disagree.most == 0) return far;
+    std::vector<Index> result;
+    for (std::size_t i = 0; i < disagree.axes.size(); ++i) {
+        const int axes = disagree.axes[i];
+        if (axes == disagree.most ||
+            (axes > 0 && std::ranges::binary_search(far, static_cast<Index>(i))))
+            result.push_back(static_cast<Index>(i));
+    }
+    return result;
+}
+
 } // namespace
 
 WithoutOutliers without_outliers(const Problem& problem) {
-    Judgement first = judge(problem);
-    const bool grid = problem.kind == SampleKind::grid;
-    std::vector<Index> outliers =
-        grid ? std::move(first.outliers) : confirmed(std::move(first.outliers), problem);
+    if (problem.kind == SampleKind::grid) {
+        const Judgement first = judge(problem);
+        std::vector<Index> outliers = of_grid(problem, first.outliers);
+        if (outliers.empty()) return {problem, {}};
+        return {with_values(problem, outliers, first.fitted), std::move(outliers)};
+    }
+    std::vector<Index> outliers = problem.kind == SampleKind::sequence
+                                      ? of_sequence(problem)
+                                      : confirmed(judge(problem).outliers, problem);
     if (outliers.empty()) return {problem, {}};
-    if (grid) return {with_values(problem, outliers, first.fitted), std::move(outliers)};
     const Subset kept = Subset::without(outliers, problem.samples.size());
     return {problem_of(kept.of(problem.samples), kept.of(problem.options)), std::move(outliers)};
 }

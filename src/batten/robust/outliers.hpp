@@ -11,9 +11,11 @@ struct WithoutOutliers {
     std::vector<Index> outliers;
 };
 
-/// Sets samples aside that lie far from a robust fit to all (robust_fit.hpp): beyond six times the
-/// residuals' scale, beyond five times what their neighbours are, and beyond the tolerance (or 1e-4
-/// of the data's size where none is stated). Samples with something to hold never do.
+/// Sets samples aside that are off beyond the tolerance (or 1e-4 of the data's size where none is
+/// stated) and: of a curve, that disagree with their neighbours (sequence_outliers.hpp); of a
+/// cloud, that are far from a robust fit to all (robust_fit.hpp), beyond six times the residuals'
+/// scale and five times what most around them are; of a grid, that disagree along all axes, or
+/// along one and are far from the robust fit. Samples with something to hold never are.
 WithoutOutliers without_outliers(const Problem& problem);
 
 } // namespace batten

@@ -35,30 +35,6 @@ double weight(double residual, double reach) {
     return part > 0 ? part * part : 0;
 }
 
-/// Chord lengths of a sequence, each at most three times the median of those around: a sample far
-/// off does not stretch its place.
-std::vector<double> bounded_chords(const Points& q, Closure closure) {
-    const Index m = q.size();
-    const Index count = closure == Closure::closed ? m : m - 1;
-    std::vector<double> chord;
-    for (Index i = 0; i < count; ++i) chord.push_back(distance(q[i], q[(i + 1) % m]));
-    std::vector<double> t{0};
-    for (Index i = 0; i < count; ++i) {
-        const Index from = std::max<Index>(0, i - 8);
-        const Index to = std::min(count, i + 9);
-        const double usual = median({chord.begin() + from, chord.begin() + to});
-        t.push_back(t.back() +
-                    std::min(chord[static_cast<std::size_t>(i)],
-                             usual > 0 ? 3 * usual : chord[static_cast<std::size_t>(i)]));
-    }
-    const double total = t.back();
-    if (!(total > 0)) return parametrize_sequence(q, Parametrization::chord, closure);
-    t.resize(static_cast<std::size_t>(m));
-    for (double& x : t) x /= total;
-    if (closure == Closure::open) t.back() = 1;
-    return t;
-}
-
 /// Parameters of a grid's axis from the medians, over its rows, of each step's part of the row.
 std::vector<double> median_chords(const Samples& samples, std::size_t axis, Closure closure) {
     const GridIndex grid(samples.grid);
@@ -96,7 +72,6 @@ Parameters robust_parameters(const Problem& problem) {
         shape.parametrization == Parametrization::uniform || samples.spacing == Spacing::even;
     if (shape.parameters || even) return problem.parameters;
     const std::vector<Closure>& closures = problem.axes.closures;
-    if (samples.grid.empty()) return {{bounded_chords(samples.points, closures[0])}, {}};
     Parameters result;
     for (std::size_t k = 0; k < samples.grid.size(); ++k)
         result.axes.push_back(median_chords(samples, k, closures[k]));
@@ -120,8 +95,9 @@ std::vector<KnotVector> robust_knots(const Problem& problem, const Parameters& p
         }
         const std::vector<double> t = without_repeats(parameters.axes[k]);
         const auto m = static_cast<Index>(t.size());
-        const Index n = std::min(m, std::max(least, degree.size() == 1 ? m / 3 : m / 2));
-        axes.push_back(knots_from_parameters(t, degree[k], n, closures[k]));
+        const Index n = std::min(m, std::max(least, m / 2));
+        axes.push_back(
+            knots_from_parameters(t, degree[k], n, closures[k], KnotPlacement::both_ends));
     }
     return axes;
 }

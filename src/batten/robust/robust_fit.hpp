@@ -4,12 +4,12 @@
 
 namespace batten {
 
-/// Parameters that samples far off do not stretch: bounded chords of a sequence, medians over a
-/// grid's rows; those given, where the options give them.
+/// Parameters that samples far off do not stretch: medians over a grid's rows; those given, where
+/// the options give them. Of a grid or a cloud.
 Parameters robust_parameters(const Problem& problem);
 
-/// Half as many control points as samples along each axis of a grid, a third otherwise, evenly
-/// among them.
+/// Half as many control points as samples along each axis of a grid, a third of a cloud's, evenly
+/// among them; the same from either end.
 std::vector<KnotVector> robust_knots(const Problem& problem, const Parameters& parameters);
 
 /// The robust fit to all samples: the reach of Tukey's loss shrinks from the largest residual to
