@@ -199,7 +199,7 @@ class Refusals(Command):
         self.bad(2, "axis 0: parameters [0, 1] are outside the knots' domain [0, 0.9]", "fit", "r.csv", "--knots", knots)
         parameters = self.write("t.txt", "\n".join(["0"] * 29 + ["1"]))
         self.bad(2, "axis 0: no samples in knot spans [0.2, 0.4], [0.4, 0.6], [0.6, 0.8]: the direct solver cannot determine every control point "
-                    "(Schoenberg-Whitney); use an iterative method such as --method cg, or --smooth",
+                    "(Schoenberg-Whitney); use an iterative method such as cg, or smoothing",
                  "fit", "r.csv", "--parameters", parameters, "--knots", "uniform", "-n", 8, "--method", "direct")
 
     def test_words(self):
@@ -216,7 +216,7 @@ class Refusals(Command):
 
 
     def test_methods_that_need_more(self):
-        self.bad(2, "epia: state where to stop: a deviation (--stop-deviation) or a number of control points", "fit", "r.csv", "--method", "epia")
+        self.bad(2, "epia: state where to stop: a stop deviation or a number of control points", "fit", "r.csv", "--method", "epia")
         self.bad(2, "axis 0: pia needs as many control points as samples, got 8 and 30", "fit", "r.csv", "--method", "pia", "-n", 8)
         self.bad(2, "interpolated sample 30: the samples are 0 to 29", "fit", "r.csv", "-n", 8, "--interpolate", "0,30")
         self.bad(2, "interpolated sample 4 is given twice", "fit", "r.csv", "-n", 8, "--interpolate", "4,4")

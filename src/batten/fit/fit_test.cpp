@@ -159,7 +159,7 @@ TEST(Fit, samples_that_determine_too_little_are_named_or_iterated) {
     EXPECT_EQ(message_of<InvalidInput>([&] { fit(sequence(q), options); }),
               "axis 0: no samples in knot spans [0.3, 0.4], [0.4, 0.5], [0.5, 0.6], ...: the "
               "direct solver cannot determine every control point "
-              "(Schoenberg-Whitney); use an iterative method such as --method cg, or --smooth");
+              "(Schoenberg-Whitney); use an iterative method such as cg, or smoothing");
     options.method.name = "auto";
     const FitResult result = fit(sequence(q), options);
     EXPECT_EQ(result.report.method, "cg");

@@ -52,13 +52,13 @@ std::vector<SplineFormat>& registry() {
         {".svg", "picture of a planar curve, exact cubic Beziers", svg_picture, {}},
         {".obj", "Wavefront free-form curves and surfaces", obj_text, {}, true},
         {".g2", "GoTools curves, surfaces and volumes", g2_text, {}, true},
-        {".stl", "triangles of surfaces, within --chord-tolerance", stl_binary, {}, true},
+        {".stl", "triangles of surfaces, within the chord tolerance", stl_binary, {}, true},
         {".vts", "VTK structured grid: the spline sampled", vts_text, {}},
         {".vtu",
          "VTK unstructured grid: samples with deviation, control net, spline",
          vtu_text,
          {}},
-        {".csv", "evaluated points, within --chord-tolerance", evaluated_text, {}},
+        {".csv", "evaluated points, within the chord tolerance", evaluated_text, {}},
     };
     return all;
 }
@@ -126,7 +126,7 @@ Samples points_from(NumberArray array, const std::vector<Index>& grid,
         throw InvalidInput(
             fmt::format("{}: {} means points of dimension {}, outside 1 to 16{}", path.string(),
                         fmt::join(shape, "x"), dim,
-                        shape.size() == 2 ? "; --heights reads it as a grid of heights" : ""));
+                        shape.size() == 2 ? "; heights reads it as a grid of heights" : ""));
     Samples samples;
     if (shape.size() > 2) samples.grid.assign(shape.begin(), shape.end() - 1);
     if (!grid.empty()) samples.grid = grid;
