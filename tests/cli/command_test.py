@@ -69,10 +69,12 @@ class Fits(Command):
 
     def test_closed_curve_repeats_its_first_control_points(self):
         self.good("generate", "circle", "-o", "c.csv")
-        self.good("fit", "c.csv", "--closed", "-n", 12, "-o", "c.json")
+        words = self.good("fit", "c.csv", "--closed", "-n", 12, "-o", "c.json", "--summary", "s.json")
         spline = self.read_json("c.json")
         self.assertEqual(spline["closed"], [True])
         self.assertEqual(spline["control_shape"], [15])
+        self.assertEqual(self.read_json("s.json")["control_shape"], [12])  # the report counts as -n does
+        self.assertIn(" 12 control points, closed", words)
         self.assertEqual(spline["control_points"][:3], spline["control_points"][-3:])
         radius = np.linalg.norm(evaluate(spline, np.linspace(0, 1, 400)), axis=1)
         self.assertLess(abs(radius - 1).max(), 1e-3)  # 12 cubic pieces of a circle: 3e-4

@@ -104,7 +104,7 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     report.kind = kind_name(spline);
     report.samples = samples.size();
     report.dim = samples.dim();
-    report.control_shape = spline.control_shape();
+    report.control_shape = free_shape(spline.axes());
     for (const KnotVector& axis : spline.axes()) {
         report.degree.push_back(axis.degree());
         report.closures.push_back(axis.closure());

@@ -92,7 +92,8 @@ TEST(Fit, a_volume_and_a_closed_surface_are_within_their_sampling) {
     FitOptions options = size({16, 12});
     options.shape.closures = {Closure::closed};
     const FitResult torus = fit(generate("torus"), options);
-    EXPECT_EQ(torus.report.control_shape, (std::vector<Index>{19, 15}));
+    EXPECT_EQ(torus.spline.control_shape(), (std::vector<Index>{19, 15}));
+    EXPECT_EQ(torus.report.control_shape, options.shape.control_points);
     // 16 cubic pieces of a circle of radius 4: (2 pi / 16)^4 / 720 * 4 and more
     EXPECT_LT(reference::largest(
                   reference::deviations(torus.spline, generate("torus").points, torus.parameters)),

@@ -39,7 +39,7 @@ struct FitReport {
     Index samples = 0;
     Index dim = 0;
     std::vector<int> degree;
-    std::vector<Index> control_shape; ///< as stored; a closed axis repeats its first degree
+    std::vector<Index> control_shape; ///< free control points per axis, as sizes are stated
     std::vector<Closure> closures;
     std::string method;
     std::string method_reason; ///< why `auto` chose it; empty when the caller did

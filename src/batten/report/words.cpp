@@ -35,12 +35,9 @@ bool FitReport::goals_met() const {
 }
 
 std::string FitReport::brief() const {
-    std::vector<Index> shape = control_shape;
-    for (std::size_t k = 0; k < shape.size(); ++k)
-        if (closures[k] == Closure::closed) shape[k] -= degree[k];
     return fmt::format(
         "{} of degree {}, {} control points{}: {} samples within {:.4g} (rms {:.4g}), {}", kind,
-        fmt::join(degree, "x"), fmt::join(shape, "x"), closed_axes(closures),
+        fmt::join(degree, "x"), fmt::join(control_shape, "x"), closed_axes(closures),
         set_aside.empty()
             ? std::to_string(samples)
             : fmt::format("{} of {}", samples - static_cast<Index>(set_aside.size()), samples),
