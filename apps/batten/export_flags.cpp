@@ -1,4 +1,5 @@
 #include "export_flags.hpp"
+#include "parse.hpp"
 
 #include <fmt/format.h>
 
@@ -28,7 +29,7 @@ void add_export_flags(CLI::App& app, ExportFlags& flags) {
     app.add_option("--chord-tolerance", flags.chord_tolerance,
                    "How far .stl, .vtu, .vts and .csv may be from the spline (a thousandth of its "
                    "size)")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->group("Output");
     app.add_option("--date", flags.date,
                    "Date in CAD headers, 2026-01-31T12:00:00 (a fixed one: equal fits give equal "

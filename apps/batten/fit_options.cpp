@@ -50,8 +50,9 @@ void set_closures(const FitFlags& flags, const Samples& samples, ShapeOptions& s
                 "--closed {}: the continuity at a seam is for curves; a grid's axes are 0 to {}",
                 text, axes - 1));
         const double order = parse_number("--closed C", text.substr(1));
-        if (order != std::floor(order) || order < 0)
-            throw InvalidInput(fmt::format("--closed {}: C0, C1, ... is needed", text));
+        if (order != std::floor(order) || order < 0 || order >= max_degree)
+            throw InvalidInput(
+                fmt::format("--closed {}: C0 to C{} is needed", text, max_degree - 1));
         shape.seam_continuity = static_cast<int>(order);
         return;
     }
@@ -198,8 +199,6 @@ HoldOptions hold_options(const FitFlags& flags, const Samples& samples) {
 
 ToleranceOptions tolerance_options(const FitFlags& flags, const CLI::App& fit) {
     ToleranceOptions tolerance;
-    if (fit.count("--tolerance") > 0 && !(flags.tolerance > 0))
-        throw InvalidInput(fmt::format("--tolerance {}: must be positive", flags.tolerance));
     if (fit.count("--tolerance") + fit.count("--tolerances") > 0 && !flags.control_points.empty())
         throw InvalidInput("--tolerance and --control-points: one of them states the size; "
                            "--max-control-points bounds a tolerance");
