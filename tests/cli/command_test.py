@@ -146,11 +146,59 @@ class Refusals(Command):
                                 ("--spacing: it is for --heights", "-n", 20, "--spacing", "2,2"),
                                 ("--interpolate all: a list like 0,20,40 or a file is needed", "-n", 20, "--interpolate", "all"),
                                 ("--report x.pdf: a page .html is written", "-n", 20, "--report", "x.pdf"),
-                                ("--date soon: a date like 2026-01-31T12:00:00 is needed", "-n", 20, "--date", "soon", "-o", "x.obj"),
+                                ("--date soon: a date like 2026-01-31T12:00:00 is needed", "-n", 20, "--date", "soon", "-o", "x.step"),
+                                ("--date: it is for .step, .stp, .igs, .iges", "-n", 20, "--date", "2026-01-31T12:00:00", "-o", "x.obj", "--report", "x.html"),
+                                ("--unit: it is for .step, .stp, .igs, .iges, --report", "-n", 20, "--unit", "m", "-o", "x.json", "-o", "x.stl"),
+                                ("--unit: it is for .step, .stp, .igs, .iges, --report", "-n", 20, "--unit", "mm"),
+                                ("--chord-tolerance: it is for .stl, .vts, .vtu, .csv", "-n", 20, "--chord-tolerance", 0.1, "-o", "x.svg", "-o", "x.step"),
+                                ("--history: it needs --summary or --report", "-n", 20, "-m", "lspia", "--history", "-o", "x.json"),
+                                ("method direct cannot start from stated control points; lspia, mlspia, clspia, ... can", "-n", 20, "-m", "direct", "--initial", "zero"),
                                 ("r.csv: it is the file of the points", "-n", 20, "-o", "r.csv")):
             self.bad(2, message, "fit", "r.csv", *words)
+        self.bad(2, "--unit: it is for .step, .stp, .igs, .iges", "convert", "k.json", "-o", "x.json", "--unit", "m")
+        self.bad(2, "--chord-tolerance: it is for .stl, .vts, .vtu, .csv", "convert", "k.json", "-o", "-", "--chord-tolerance", 1)
         self.bad(3, "o.csv:1:1: '1e400' is not a number", "info", self.write("o.csv", "1e400,2\n-1,4\n"))
         self.bad(2, "p.txt: row 1: parameter 1.5 is outside the domain [0, 1] of axis 0", "evaluate", "k.json", "--parameters", self.write("p.txt", "0.5\n1.5\n"))
+
+    def test_outputs_that_show_what_is_given_beside_others(self):
+        self.good("fit", "r.csv", "-n", 9, "-q", "-o", "a.json", "-o", "a.csv", "--chord-tolerance", 0.01, "--report", "a.html", "--unit", "cm")
+        self.good("convert", "a.json", "-o", "b.vts", "-o", "b.svg", "--chord-tolerance", 0.01)
+
+    def test_a_start_leaves_the_choice_to_an_iteration(self):
+        self.good("fit", "r.csv", "-n", 9, "-q", "--initial", "zero", "--summary", "s.json")
+        self.assertEqual(self.read_json("s.json")["method"], "cg")
+        self.good("fit", "r.csv", "-n", 9, "-q", "--initial", "data", "--summary", "s.json")  # as without it
+        self.assertEqual(self.read_json("s.json")["method"], "direct")
+
+    def test_numbers_that_state_nothing(self):
+        for flag in ("--stop-deviation", "--stop-gradient", "--stop-relative-gradient", "--max-iterations", "--threads"):
+            for value in ("inf", "nan", "-1", "1e400"):
+                self.bad(2, f"{flag}: {value} is not a finite number, 0 or more", "fit", "r.csv", "-n", 8, f"{flag}={value}")
+        for flag in ("--tolerance", "--chord-tolerance", "--max-control-points"):
+            for value in ("inf", "nan", "-1", "0"):
+                self.bad(2, f"{flag}: {value} is not a finite number above 0", "fit", "r.csv", f"{flag}={value}")
+        self.bad(2, "--spacing inf: a finite number is needed", "fit", "r.csv", "--heights", "--spacing", "1,inf")
+        self.bad(2, "--closed C inf: a finite number is needed", "fit", "r.csv", "-n", 8, "--closed=Cinf")
+        self.bad(2, "--closed C1e300: C0 to C8 is needed", "fit", "r.csv", "-n", 8, "--closed=C1e300")
+
+    def test_axes_that_cannot_close(self):
+        self.bad(2, "--closed 0,0: axis 0 is named twice", "fit", "p.csv", "--grid", "9x9", "-n", "5x5", "--closed=0,0")
+        for points, *project in (("p.csv", "--project", "xy"), (self.write("c.obj", "".join(f"v {i % 7} {i // 7} {i % 3}\n" for i in range(49))),)):
+            for closed in ("--closed", "--closed=1", "--closed=0,1"):
+                self.bad(2, "closed: a cloud's parameters are its points' coordinates in a plane, where no axis closes; give it parameters that go round",
+                         "fit", points, *project, "-n", "5x5", closed)
+            self.bad(2, "--closed 2: the axes are 0 to 1", "fit", points, *project, "-n", "5x5", "--closed=2")
+
+    def test_a_cloud_with_parameters_closes_the_axis_that_is_named(self):
+        rng = np.random.default_rng(4)
+        u, v = rng.random((2, 600))
+        points = np.c_[np.cos(2 * np.pi * u), np.sin(2 * np.pi * u), v]
+        np.savetxt(self.folder / "tube.csv", points, delimiter=",")
+        np.savetxt(self.folder / "uv.txt", np.c_[u, v])
+        self.good("fit", "tube.csv", "--parameters", "uv.txt", "-n", "12x5", "--closed=0", "-q", "-o", "t.json", "--summary", "s.json")
+        spline, summary = self.read_json("t.json"), self.read_json("s.json")
+        self.assertEqual((spline["closed"], spline["control_shape"], summary["control_shape"]), ([True, False], [15, 5], [12, 5]))
+        self.assertLess(summary["max_deviation"], 1e-3)  # 12 cubic pieces of a circle: 3e-4
 
     def test_files(self):
         self.bad(3, "none.csv: cannot be read: No such file or directory", "fit", "none.csv", "-n", 8)

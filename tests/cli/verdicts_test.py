@@ -177,8 +177,8 @@ class Table(Verdicts):
         table = [[cell.strip() for cell in line.strip("|").split("|")] for line in self.run_batten("methods", "--table").stdout.splitlines()]
         head = table[0]
         rows = {row[0]: dict(zip(head[1:], row[1:])) for row in table[2:]}
-        flags = {"weigh samples": ["--weights", "weights.txt"], "smooth": ["--smooth", "1e-6"], "record a history": ["--history"],
-                 "pass through samples exactly": ["--interpolate", "ends"], "set outliers aside": ["--robust"]}
+        flags = {"weigh samples": ["--weights", "weights.txt"], "smooth": ["--smooth", "1e-6"], "record a history": ["--history", "--summary", "r.json"],
+                 "pass through samples exactly": ["--interpolate", "ends"], "set outliers aside": ["--robust"], "start from stated control points": ["--initial", "zero"]}
         for words, flag in flags.items():
             for method, cell in rows[words].items():
                 size = {"search": ["-t", 0.01], "pia": [], "epia": ["--stop-deviation", 0.01]}.get(method, ["-n", 12])

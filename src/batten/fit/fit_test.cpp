@@ -218,6 +218,14 @@ TEST(Fit, refuses_what_breaks_a_rule) {
     options.tolerance.corner_samples = {5};
     EXPECT_EQ(refusal(options),
               "corners: samples are given, but the corners are not the given ones");
+    Samples cloud = generate("peaks", {9, 9});
+    cloud.grid.clear();
+    options = size({5, 5});
+    options.shape.projection = Projection::xy;
+    options.shape.closures = {Closure::open, Closure::closed};
+    EXPECT_EQ(message_of<InvalidInput>([&] { fit(cloud, options); }),
+              "closed: a cloud's parameters are its points' coordinates in a plane, where no axis "
+              "closes; give it parameters that go round");
     options = size({6});
     options.cancelled = [] { return true; };
     EXPECT_EQ(message_of<Cancelled>([&] { fit(rose, options); }), "the fit was cancelled");
