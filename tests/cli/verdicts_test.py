@@ -143,6 +143,48 @@ class Sameness(Verdicts):
         base = self.fit(4, self.save("w.csv", data), *options)[1]
         np.save(self.folder / "u.npy", data * 2.0 ** 600)
         far = self.fit(4, "u.npy", *options)[1]
+class KeptShape(Verdicts):
+    def away(self, spline, data):
+        return np.linalg.norm(evaluate(spline, chord(data)) - data, axis=1).max()
+
+    def test_a_straight_start_is_no_lock(self):
+        """Where nothing bends yet a polygon may begin to; from zero it comes to the samples."""
+        t = np.arange(12.0)
+        for slope in (1, 0.37):
+            for shift in (0, 1000):
+                data = np.c_[shift + t, shift + slope * t]
+                for shape in ("convexity", "inflections"):
+                    options = [self.save("l.csv", data), "-n", 4, "-m", "lspia", "--preserve", shape]
+                    spline, report, _ = self.fit(0, *options)
+                    self.assertEqual((report["termination"], report["inflections"]), ("converged", 0))
+                    self.assertLess(self.away(spline, data), 1e-9)
+                    done = self.run_batten("fit", *options, "--initial", "zero", "-o", "s.json")
+                    self.assertIn(done.returncode, (0, 4))
+                    self.assertLess(self.away(json.loads((self.folder / "s.json").read_text()), data), 1e-3)
+                spline, report, _ = self.fit(0, "l.csv", "-m", "pia", "-n", 12, "--preserve", "convexity", "--initial", "zero")
+                self.assertLess(self.away(spline, data), 1e-6)
+
+    def test_a_lock_far_from_the_samples_has_not_reached_its_stop(self):
+        t = np.arange(12.0)
+        data = np.c_[1000 + t, 1000 + 0.1 * (t - 6) ** 2]
+        for method, n in (("lspia", 4), ("mlspia", 12)):
+            for unit in (1.0, 2.0 ** 600):
+                np.save(self.folder / "a.npy", data * unit)
+                spline, report, words = self.fit(4, "a.npy", "-n", n, "-m", method, "--preserve", "convexity", "--initial", "zero")
+                self.assertEqual(report["termination"], "stalled")
+                spline["control_points"] = (np.array(spline["control_points"]) / unit).tolist()
+                self.assertAlmostEqual(self.away(spline, data) / (report["max_deviation"] / unit), 1, 9)
+                self.assertGreater(report["max_deviation"] / unit, 1)
+                self.assertGreater(report["held_back"] / unit, 1)
+                goal, = (goal for goal in report["goals"] if not goal["met"])
+                self.assertEqual((goal["goal"], goal["stated"]), ("relative gradient", 1e-10))
+                self.assertAlmostEqual(goal["reached"], report["gradient_norm"] / report["first_gradient_norm"], 12)
+                self.assertIn("shape       it locked the iteration, which was to move a control point by ", words)
+            spline, report, _ = self.fit(0, "a.npy", "-n", 4, "-m", method, "--preserve", "convexity")
+            self.assertEqual(report["termination"], "converged")
+            self.assertNotIn("held_back", report)
+
+
         for key in ("max_deviation", "rms_deviation", "gradient_norm", "first_gradient_norm", "constraint_error", "data_size"):
             self.assertEqual(far[key], base[key] * 2.0 ** 600, key)
         self.assertEqual(far["history"][3]["max_deviation"], base["history"][3]["max_deviation"] * 2.0 ** 600)

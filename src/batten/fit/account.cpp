@@ -62,6 +62,9 @@ std::vector<Goal> judged(const FitReport& report, const Problem& problem,
         state("gradient", stop.gradient, report.gradient_norm);
     const double least = exactness * problem.size;
     if (report.interpolated > 0) state("exact samples", least, report.constraint_error);
+    if (report.held_back > least && stop.relative_gradient > 0) // it locked before its stop
+        state("relative gradient", stop.relative_gradient,
+              report.gradient_norm / report.first_gradient_norm);
     if (report.tangents > 0) state("tangents", exactness, report.tangent_error);
     if (report.boundaries > 0) state("boundaries", least, report.boundary_error);
     if (report.allowed_inflections >= 0)

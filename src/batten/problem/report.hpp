@@ -60,6 +60,8 @@ struct FitReport {
     Index inflections = -1;         ///< of the control polygon, where they are kept; else -1
     Index allowed_inflections = -1; ///< that the kept shape allows it; -1: not counted
     Index curve_inflections = -1; ///< of a planar curve fitted to a tolerance, those larger than a
+    double held_back = 0;         ///< longest move that was left to make when the kept shape locked
+                                  ///< the iteration; 0 where it did not
                                   ///< quarter of it; -1 where not counted
     Index data_inflections = -1;  ///< the same of the samples
     double tolerance = 0;         ///< as stated, 0 when none was (per sample: the smallest)

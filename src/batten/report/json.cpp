@@ -59,6 +59,7 @@ void add_held(Json& json, const FitReport& r) {
     if (r.allowed_inflections >= 0) json["allowed_inflections"] = r.allowed_inflections;
     if (r.curve_inflections >= 0) {
         json["curve_inflections"] = r.curve_inflections;
+    if (r.held_back > 0) json["held_back"] = r.held_back;
         json["data_inflections"] = r.data_inflections;
     }
 }

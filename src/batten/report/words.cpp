@@ -136,6 +136,10 @@ Lines exactness(const FitReport& r) {
     return lines;
 }
 
+    if (r.held_back > 0)
+        lines.emplace_back("shape", fmt::format("it locked the iteration, which was to move a "
+                                                "control point by {:.3g} more",
+                                                r.held_back));
 /// Stated goals that were not reached, but for the tolerance, whose verdict says so.
 Lines missed_goals(const FitReport& r) {
     Lines lines;
