@@ -83,6 +83,34 @@ class Goals(Verdicts):
             self.assertEqual("4 samples hit to" in words, status == 0)
             self.assertEqual("4 samples missed by up to" in words, status == 4)
 
+    def test_a_tangent_turned_round_is_said_without_a_number(self):
+        points = self.save("w.csv", wave(60))
+        spline, _, _ = self.fit(0, points, "-n", 9)
+        self.save("back.csv", control_points(spline)[::-1])  # from here the curve runs the other way
+        step = wave(60)[31] - wave(60)[29]
+        (self.folder / "t.csv").write_text(f"30,{step[0]!r},{step[1]!r}\n")
+        options = [points, "-n", 9, "-m", "clspia", "--tangents", "t.csv", "--initial", "back.csv", "--max-iterations"]
+        spline, report, words = self.fit(4, *options, 0)
+        self.assertLess(BSpline(np.array(spline["knots"][0]), control_points(spline), 3)(chord(wave(60))[30], nu=1) @ step, 0)
+        self.assertNotIn("null", (self.folder / "r.json").read_text())
+        self.assertNotIn("tangent_error", report)
+        self.assertEqual(report["goals"], [{"goal": "tangents", "stated": 1e-9, "met": False}])
+        self.assertIn("runs against the stated direction", report["notes"][0])
+        self.assertIn("1 tangent missed, turned round", words)
+        self.assertNotIn("inf", words)
+        self.assertLess(self.fit(0, *options, 100000)[1]["tangent_error"], 1e-9)
+
+    def test_a_tangent_against_the_order_of_a_grid_is_refused(self):
+        u, v = np.meshgrid(np.linspace(0, 1, 9), np.linspace(0, 1, 7), indexing="ij")
+        np.save(self.folder / "g.npy", np.stack([u, v, np.sin(3 * u) * v], axis=-1))
+        for sample in (0, 31, 62):
+            for axis, direction in ((0, (-1, 0.5, 0)), (1, (0.5, -1, 0))):
+                row = f"{sample},{axis},{','.join(map(str, direction))}\n"
+                (self.folder / "t.csv").write_text(row)
+                self.refused(f"tangent at sample {sample}: it points against the order of the samples; reverse its sign", "g.npy", "-n", "5x5", "--tangents", "t.csv")
+                (self.folder / "t.csv").write_text(f"{sample},{axis},{','.join(str(-x) for x in direction)}\n")
+                self.good("fit", "g.npy", "-n", "5x5", "--tangents", "t.csv", "-q")
+
     def test_closed_pia_interpolates_a_torus(self):
         self.good("generate", "torus", "-o", "t.npy")
         spline, _, _ = self.fit(0, "t.npy", "-m", "pia", "-n", "60x40", "--closed=0,1", "--max-iterations", 40)
@@ -115,34 +143,6 @@ class Goals(Verdicts):
         self.assertEqual(report["method"], "direct")
 
 
-class Sameness(Verdicts):
-    def test_reversed_samples_give_the_reversed_spline(self):
-        data = wave(90)
-        self.save("w.csv", data)
-        self.save("r.csv", data[::-1])
-        for degree in range(1, 10):
-            for n in (degree + 1, 17, 31):
-                one = control_points(self.fit(0, "w.csv", "-n", n, "-p", degree)[0])
-                two = control_points(self.fit(0, "r.csv", "-n", n, "-p", degree)[0])
-                self.assertLess(np.abs(one - two[::-1]).max(), 1e-6 * 4.0 ** (degree - 5) if degree > 5 else 1e-9, (degree, n))
-
-    def test_units_change_nothing(self):
-        data = wave(80)
-        base = self.fit(0, self.save("w.csv", data), "-t", 1e-3)[0]
-        for exponent in (-700, -40, 7, 332, 600):  # the coordinates' exponents alone change
-            np.save(self.folder / "u.npy", data * 2.0 ** exponent)
-            scaled = self.fit(0, "u.npy", "-t", repr(1e-3 * 2.0 ** exponent))[0]
-            self.assertTrue((control_points(scaled) == control_points(base) * 2.0 ** exponent).all(), exponent)
-        for factor in (1e-3, 25.4, 1e100, 1e-100):
-            scaled = self.fit(0, self.save("u.csv", data * factor), "-t", repr(1e-3 * factor))[0]
-            self.assertLessEqual(abs(len(control_points(scaled)) - len(control_points(base))), 2, factor)
-
-    def test_every_length_of_the_report_is_in_the_callers_unit(self):
-        data = wave(80)
-        options = ["-n", 12, "-m", "clspia", "--interpolate", "0,79", "--history", "--max-iterations", 30]
-        base = self.fit(4, self.save("w.csv", data), *options)[1]
-        np.save(self.folder / "u.npy", data * 2.0 ** 600)
-        far = self.fit(4, "u.npy", *options)[1]
 class KeptShape(Verdicts):
     def away(self, spline, data):
         return np.linalg.norm(evaluate(spline, chord(data)) - data, axis=1).max()
@@ -185,6 +185,34 @@ class KeptShape(Verdicts):
             self.assertNotIn("held_back", report)
 
 
+class Sameness(Verdicts):
+    def test_reversed_samples_give_the_reversed_spline(self):
+        data = wave(90)
+        self.save("w.csv", data)
+        self.save("r.csv", data[::-1])
+        for degree in range(1, 10):
+            for n in (degree + 1, 17, 31):
+                one = control_points(self.fit(0, "w.csv", "-n", n, "-p", degree)[0])
+                two = control_points(self.fit(0, "r.csv", "-n", n, "-p", degree)[0])
+                self.assertLess(np.abs(one - two[::-1]).max(), 1e-6 * 4.0 ** (degree - 5) if degree > 5 else 1e-9, (degree, n))
+
+    def test_units_change_nothing(self):
+        data = wave(80)
+        base = self.fit(0, self.save("w.csv", data), "-t", 1e-3)[0]
+        for exponent in (-700, -40, 7, 332, 600):  # the coordinates' exponents alone change
+            np.save(self.folder / "u.npy", data * 2.0 ** exponent)
+            scaled = self.fit(0, "u.npy", "-t", repr(1e-3 * 2.0 ** exponent))[0]
+            self.assertTrue((control_points(scaled) == control_points(base) * 2.0 ** exponent).all(), exponent)
+        for factor in (1e-3, 25.4, 1e100, 1e-100):
+            scaled = self.fit(0, self.save("u.csv", data * factor), "-t", repr(1e-3 * factor))[0]
+            self.assertLessEqual(abs(len(control_points(scaled)) - len(control_points(base))), 2, factor)
+
+    def test_every_length_of_the_report_is_in_the_callers_unit(self):
+        data = wave(80)
+        options = ["-n", 12, "-m", "clspia", "--interpolate", "0,79", "--history", "--max-iterations", 30]
+        base = self.fit(4, self.save("w.csv", data), *options)[1]
+        np.save(self.folder / "u.npy", data * 2.0 ** 600)
+        far = self.fit(4, "u.npy", *options)[1]
         for key in ("max_deviation", "rms_deviation", "gradient_norm", "first_gradient_norm", "constraint_error", "data_size"):
             self.assertEqual(far[key], base[key] * 2.0 ** 600, key)
         self.assertEqual(far["history"][3]["max_deviation"], base["history"][3]["max_deviation"] * 2.0 ** 600)

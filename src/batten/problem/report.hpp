@@ -51,17 +51,18 @@ struct FitReport {
     double predicted_rate = 0; ///< 0 when the theory gives none
     double observed_rate = 0;  ///< 0 when the run was too short
     Deviation deviation;
-    Index interpolated = 0;         ///< samples that must be hit exactly
-    double constraint_error = 0;    ///< largest distance from one of them
-    Index tangents = 0;             ///< directions and derivatives that must hold
-    double tangent_error = 0;       ///< by how much they are missed, over the data's size
-    Index boundaries = 0;           ///< boundaries that must hold
-    double boundary_error = 0;      ///< largest distance from one of them
-    Index inflections = -1;         ///< of the control polygon, where they are kept; else -1
+    Index interpolated = 0;      ///< samples that must be hit exactly
+    double constraint_error = 0; ///< largest distance from one of them
+    Index tangents = 0;          ///< directions and derivatives that must hold
+    double tangent_error = 0;    ///< by how much they are missed, over the data's size; infinite:
+                                 ///< the spline runs against one, or has no direction there
+    Index boundaries = 0;        ///< boundaries that must hold
+    double boundary_error = 0;   ///< largest distance from one of them
+    Index inflections = -1;      ///< of the control polygon, where they are kept; else -1
     Index allowed_inflections = -1; ///< that the kept shape allows it; -1: not counted
-    Index curve_inflections = -1; ///< of a planar curve fitted to a tolerance, those larger than a
     double held_back = 0;         ///< longest move that was left to make when the kept shape locked
                                   ///< the iteration; 0 where it did not
+    Index curve_inflections = -1; ///< of a planar curve fitted to a tolerance, those larger than a
                                   ///< quarter of it; -1 where not counted
     Index data_inflections = -1;  ///< the same of the samples
     double tolerance = 0;         ///< as stated, 0 when none was (per sample: the smallest)

@@ -1,6 +1,7 @@
 #include <batten/problem/report.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -112,7 +113,9 @@ std::string held_words(Index count, std::string_view one, std::string_view many,
                        double error) {
     const bool met =
         std::ranges::all_of(r.goals, [&](const Goal& g) { return g.name != goal || g.met; });
-    return fmt::format("{} {} {} {:.2g}", count, count == 1 ? one : many,
+    const std::string_view noun = count == 1 ? one : many;
+    if (!std::isfinite(error)) return fmt::format("{} {} missed, turned round", count, noun);
+    return fmt::format("{} {} {} {:.2g}", count, noun,
                        met ? fmt::format("{} to", held) : "missed by up to", error);
 }
 
@@ -133,20 +136,23 @@ Lines exactness(const FitReport& r) {
                          ? fmt::format("{} inflections in the control polygon, {} allowed",
                                        r.inflections, r.allowed_inflections)
                          : fmt::format("{} inflections in the control polygon", r.inflections));
-    return lines;
-}
-
     if (r.held_back > 0)
         lines.emplace_back("shape", fmt::format("it locked the iteration, which was to move a "
                                                 "control point by {:.3g} more",
                                                 r.held_back));
+    return lines;
+}
+
 /// Stated goals that were not reached, but for the tolerance, whose verdict says so.
 Lines missed_goals(const FitReport& r) {
     Lines lines;
     for (const Goal& goal : r.goals)
         if (!goal.met && goal.name != "tolerance")
-            lines.emplace_back("missed", fmt::format("{}: stated {:.6g}, reached {:.6g}", goal.name,
-                                                     goal.stated, goal.reached));
+            lines.emplace_back("missed",
+                               fmt::format("{}: stated {:.6g}, {}", goal.name, goal.stated,
+                                           std::isfinite(goal.reached)
+                                               ? fmt::format("reached {:.6g}", goal.reached)
+                                               : "turned round"));
     return lines;
 }
 
