@@ -93,7 +93,7 @@ void add_format(std::string extension, std::string description, Task write, Task
                      [read](const std::filesystem::path& path, const std::string& content) {
                          return parsed(read, path, content);
                      },
-                     true});
+                     true, SceneDetail::unit_and_date});
 }
 
 bool add_formats() {

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace batten::command {
 
@@ -15,6 +16,11 @@ struct ExportFlags {
 };
 
 void add_export_flags(CLI::App& app, ExportFlags& flags);
+
+/// Throws InvalidInput for a flag that no output shows, or that makes no sense; `report` is a page
+/// or empty.
+void check(const ExportFlags& flags, const CLI::App& app, const std::vector<std::string>& outputs,
+           const std::string& report = {});
 
 /// Enters the flags in what is written.
 void apply(const ExportFlags& flags, Scene& scene);

@@ -42,6 +42,7 @@ std::string title_of(const std::string& path) {
 void run(const FitFlags& flags, const CLI::App& fit_app) {
     method_entry(flags.method);
     check_files(flags);
+    check(flags.exported, fit_app, flags.outputs, flags.report);
     Progress progress(flags.quiet ? Progress::Show::never : Progress::Show::when_slow);
     progress.say("reading " + flags.points);
     const Samples samples = samples_of(flags);

@@ -11,12 +11,13 @@ void add_shape_flags(CLI::App& fit, FitFlags& flags) {
         ->group("Size");
     fit.add_option("--tolerance,-t", flags.tolerance,
                    "Every sample within this distance, with as few control points as it takes")
+        ->check(positive())
         ->group("Size");
     fit.add_option("--tolerances", flags.tolerances, "File of one tolerance per sample")
         ->group("Size");
     fit.add_option("--max-control-points", flags.max_control_points,
                    "Not more than these for a tolerance")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->group("Size");
     fit.add_option("--corners", flags.corners,
                    "auto, none, or a list of samples: where a curve may bend sharply")
@@ -97,22 +98,22 @@ void add_noise_and_stop_flags(CLI::App& fit, FitFlags& flags) {
         ->group("Noise")
         ->capture_default_str();
     fit.add_option("--max-iterations", flags.max_iterations, "Most iterations")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->group("Stop")
         ->capture_default_str();
     fit.add_option("--stop-gradient", flags.stop_gradient,
                    "Stop at this Frobenius norm of A^T(Q - AP)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->group("Stop");
     fit.add_option("--stop-relative-gradient", flags.stop_relative_gradient,
                    "Stop at this part of its first value (1e-10 when no other stop is given)")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->group("Stop");
     fit.add_option("--stop-deviation", flags.stop_deviation, "Stop when every sample is this close")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->group("Stop");
     fit.add_option("--threads", flags.threads, "Threads; 0 takes every core")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->group("Machine")
         ->capture_default_str();
     fit.add_flag("--quiet,-q", flags.quiet, "Say nothing unless something is wrong")

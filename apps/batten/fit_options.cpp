@@ -38,20 +38,26 @@ std::vector<Index> index_list(std::string_view option, const std::string& text) 
     return result;
 }
 
+/// Axes of the fit: a cloud's are those of its parameters, or of the plane that gives it some.
+Index axis_count(const Samples& samples, const ShapeOptions& shape) {
+    if (shape.parameters && shape.parameters->is_scattered()) return shape.parameters->axis_count();
+    const bool cloud = samples.kind() == SampleKind::cloud && !shape.parameters;
+    return cloud || shape.projection ? 2 : samples.axis_count();
+}
+
 /// `all`, axes like 0,1, or C0, C1, ... for a closed curve's seam.
-void set_closures(const FitFlags& flags, const Samples& samples, ShapeOptions& shape) {
-    const std::string& text = flags.closed;
-    const Index axes = samples.axis_count();
+void set_closures(const std::string& text, Index axes, ShapeOptions& shape) {
     if (text.empty() || text == "all" || text.starts_with("C") || text.starts_with("c")) {
         shape.closures = {Closure::closed};
         if (text.empty() || text == "all") return;
         if (axes > 1)
             throw InvalidInput(fmt::format(
-                "--closed {}: the continuity at a seam is for curves; a grid's axes are 0 to {}",
+                "--closed {}: the continuity at a seam is for curves; here the axes are 0 to {}",
                 text, axes - 1));
         const double order = parse_number("--closed C", text.substr(1));
-        if (order != std::floor(order) || order < 0)
-            throw InvalidInput(fmt::format("--closed {}: C0, C1, ... is needed", text));
+        if (order != std::floor(order) || order < 0 || order >= max_degree)
+            throw InvalidInput(
+                fmt::format("--closed {}: C0 to C{} is needed", text, max_degree - 1));
         shape.seam_continuity = static_cast<int>(order);
         return;
     }
@@ -59,7 +65,10 @@ void set_closures(const FitFlags& flags, const Samples& samples, ShapeOptions& s
     for (Index axis : index_list("--closed", text)) {
         if (axis >= axes)
             throw InvalidInput(fmt::format("--closed {}: the axes are 0 to {}", text, axes - 1));
-        shape.closures[static_cast<std::size_t>(axis)] = Closure::closed;
+        Closure& closure = shape.closures[static_cast<std::size_t>(axis)];
+        if (closure == Closure::closed)
+            throw InvalidInput(fmt::format("--closed {}: axis {} is named twice", text, axis));
+        closure = Closure::closed;
     }
 }
 
@@ -97,7 +106,6 @@ ShapeOptions shape_options(const FitFlags& flags, const CLI::App& fit, const Sam
     shape.degree = flags.degree;
     if (!flags.control_points.empty())
         shape.control_points = parse_shape("--control-points", flags.control_points);
-    if (fit.count("--closed") > 0) set_closures(flags, samples, shape);
     if (fit.count("--parametrize") > 0)
         shape.parametrization =
             static_cast<Parametrization>(parse_choice("--parametrize", flags.parametrize, rules));
@@ -105,6 +113,7 @@ ShapeOptions shape_options(const FitFlags& flags, const CLI::App& fit, const Sam
     if (!flags.project.empty())
         shape.projection =
             static_cast<Projection>(parse_choice("--project", flags.project, projections));
+    if (fit.count("--closed") > 0) set_closures(flags.closed, axis_count(samples, shape), shape);
     if (flags.knots == "uniform")
         shape.placement = KnotPlacement::uniform;
     else if (flags.knots == "data")
@@ -198,8 +207,6 @@ HoldOptions hold_options(const FitFlags& flags, const Samples& samples) {
 
 ToleranceOptions tolerance_options(const FitFlags& flags, const CLI::App& fit) {
     ToleranceOptions tolerance;
-    if (fit.count("--tolerance") > 0 && !(flags.tolerance > 0))
-        throw InvalidInput(fmt::format("--tolerance {}: must be positive", flags.tolerance));
     if (fit.count("--tolerance") + fit.count("--tolerances") > 0 && !flags.control_points.empty())
         throw InvalidInput("--tolerance and --control-points: one of them states the size; "
                            "--max-control-points bounds a tolerance");
@@ -246,6 +253,8 @@ void check_together(const FitFlags& flags, const CLI::App& fit) {
     const auto refuse = [](const char* words) { throw InvalidInput(words); };
     if (given("--smooth-order") && !given("--smooth")) refuse("--smooth-order: it needs --smooth");
     if (given("--spacing") && !flags.heights) refuse("--spacing: it is for --heights");
+    if (flags.history && flags.summary.empty() && flags.report.empty())
+        refuse("--history: it needs --summary or --report");
 }
 
 } // namespace

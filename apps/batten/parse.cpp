@@ -3,6 +3,7 @@
 #include <batten/core/names.hpp>
 
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace batten::command {
@@ -23,6 +24,18 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
         if (at == std::string_view::npos) return parts;
         text.remove_prefix(at + 1);
     }
+}
+
+/// CLI's own ranges end at the largest number, whose 309 digits they print, and let nan through.
+CLI::Validator finite(std::string name, std::string rule, bool (*inside)(double)) {
+    return {[rule = std::move(rule), inside](std::string& text) {
+                double value = 0;
+                return CLI::detail::lexical_cast(text, value) && std::isfinite(value) &&
+                               inside(value)
+                           ? std::string()
+                           : fmt::format("{} is not a finite number{}", text, rule);
+            },
+            std::move(name)};
 }
 
 } // namespace
@@ -50,9 +63,17 @@ std::array<double, 2> parse_spacing(std::string_view text) {
 
 double parse_number(std::string_view option, std::string_view text) {
     double value = 0;
-    if (!parsed(text, value))
-        throw InvalidInput(fmt::format("{} {}: a number is needed", option, text));
+    if (!parsed(text, value) || !std::isfinite(value))
+        throw InvalidInput(fmt::format("{} {}: a finite number is needed", option, text));
     return value;
+}
+
+CLI::Validator positive() {
+    return finite("POSITIVE", " above 0", [](double value) { return value > 0; });
+}
+
+CLI::Validator not_negative() {
+    return finite("NONNEGATIVE", ", 0 or more", [](double value) { return value >= 0; });
 }
 
 Settings parse_settings(const std::vector<std::string>& entries) {

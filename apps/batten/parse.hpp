@@ -17,8 +17,12 @@ std::vector<Index> parse_shape(std::string_view option, std::string_view text);
 /// `DX,DY`.
 std::array<double, 2> parse_spacing(std::string_view text);
 
-/// One number; throws InvalidInput naming the option.
+/// One finite number; throws InvalidInput naming the option.
 double parse_number(std::string_view option, std::string_view text);
+
+/// Checks of a flag's number: finite and above 0, or 0 as well.
+CLI::Validator positive();
+CLI::Validator not_negative();
 
 /// `name=value` for each entry.
 Settings parse_settings(const std::vector<std::string>& entries);

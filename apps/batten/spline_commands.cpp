@@ -168,7 +168,7 @@ void plot(const std::string& spline_path, const PointFlags& points, const std::s
 }
 
 void convert(const std::vector<std::string>& paths, const std::vector<std::string>& outputs,
-             const ExportFlags& exported) {
+             const ExportFlags& exported, const CLI::App& app) {
     std::vector<FileUse> inputs;
     for (const std::string& path : paths) inputs.push_back({path, "a spline"});
     std::vector<FileUse> written;
@@ -177,6 +177,7 @@ void convert(const std::vector<std::string>& paths, const std::vector<std::strin
         written.push_back({output, "--output"});
     }
     check_outputs(written, inputs);
+    check(exported, app, outputs);
     std::vector<Spline> splines;
     for (const std::string& path : paths)
         for (Spline& spline : read_splines(path)) splines.push_back(std::move(spline));
@@ -274,7 +275,7 @@ void add_convert(CLI::App& app) {
     one_value_each(*sub);
     sub->footer("Examples:\n  batten convert part.json -o part.step --unit m\n"
                 "  batten convert upper.json lower.json -o wing.igs");
-    sub->callback([flags] { convert(flags->splines, flags->outputs, flags->exported); });
+    sub->callback([flags, sub] { convert(flags->splines, flags->outputs, flags->exported, *sub); });
 }
 
 } // namespace batten::command

@@ -69,10 +69,12 @@ class Fits(Command):
 
     def test_closed_curve_repeats_its_first_control_points(self):
         self.good("generate", "circle", "-o", "c.csv")
-        self.good("fit", "c.csv", "--closed", "-n", 12, "-o", "c.json")
+        words = self.good("fit", "c.csv", "--closed", "-n", 12, "-o", "c.json", "--summary", "s.json")
         spline = self.read_json("c.json")
         self.assertEqual(spline["closed"], [True])
         self.assertEqual(spline["control_shape"], [15])
+        self.assertEqual(self.read_json("s.json")["control_shape"], [12])  # the report counts as -n does
+        self.assertIn(" 12 control points, closed", words)
         self.assertEqual(spline["control_points"][:3], spline["control_points"][-3:])
         radius = np.linalg.norm(evaluate(spline, np.linspace(0, 1, 400)), axis=1)
         self.assertLess(abs(radius - 1).max(), 1e-3)  # 12 cubic pieces of a circle: 3e-4
@@ -144,11 +146,59 @@ class Refusals(Command):
                                 ("--spacing: it is for --heights", "-n", 20, "--spacing", "2,2"),
                                 ("--interpolate all: a list like 0,20,40 or a file is needed", "-n", 20, "--interpolate", "all"),
                                 ("--report x.pdf: a page .html is written", "-n", 20, "--report", "x.pdf"),
-                                ("--date soon: a date like 2026-01-31T12:00:00 is needed", "-n", 20, "--date", "soon", "-o", "x.obj"),
+                                ("--date soon: a date like 2026-01-31T12:00:00 is needed", "-n", 20, "--date", "soon", "-o", "x.step"),
+                                ("--date: it is for .step, .stp, .igs, .iges", "-n", 20, "--date", "2026-01-31T12:00:00", "-o", "x.obj", "--report", "x.html"),
+                                ("--unit: it is for .step, .stp, .igs, .iges, --report", "-n", 20, "--unit", "m", "-o", "x.json", "-o", "x.stl"),
+                                ("--unit: it is for .step, .stp, .igs, .iges, --report", "-n", 20, "--unit", "mm"),
+                                ("--chord-tolerance: it is for .stl, .vts, .vtu, .csv", "-n", 20, "--chord-tolerance", 0.1, "-o", "x.svg", "-o", "x.step"),
+                                ("--history: it needs --summary or --report", "-n", 20, "-m", "lspia", "--history", "-o", "x.json"),
+                                ("method direct cannot start from stated control points; lspia, mlspia, clspia, ... can", "-n", 20, "-m", "direct", "--initial", "zero"),
                                 ("r.csv: it is the file of the points", "-n", 20, "-o", "r.csv")):
             self.bad(2, message, "fit", "r.csv", *words)
+        self.bad(2, "--unit: it is for .step, .stp, .igs, .iges", "convert", "k.json", "-o", "x.json", "--unit", "m")
+        self.bad(2, "--chord-tolerance: it is for .stl, .vts, .vtu, .csv", "convert", "k.json", "-o", "-", "--chord-tolerance", 1)
         self.bad(3, "o.csv:1:1: '1e400' is not a number", "info", self.write("o.csv", "1e400,2\n-1,4\n"))
         self.bad(2, "p.txt: row 1: parameter 1.5 is outside the domain [0, 1] of axis 0", "evaluate", "k.json", "--parameters", self.write("p.txt", "0.5\n1.5\n"))
+
+    def test_outputs_that_show_what_is_given_beside_others(self):
+        self.good("fit", "r.csv", "-n", 9, "-q", "-o", "a.json", "-o", "a.csv", "--chord-tolerance", 0.01, "--report", "a.html", "--unit", "cm")
+        self.good("convert", "a.json", "-o", "b.vts", "-o", "b.svg", "--chord-tolerance", 0.01)
+
+    def test_a_start_leaves_the_choice_to_an_iteration(self):
+        self.good("fit", "r.csv", "-n", 9, "-q", "--initial", "zero", "--summary", "s.json")
+        self.assertEqual(self.read_json("s.json")["method"], "cg")
+        self.good("fit", "r.csv", "-n", 9, "-q", "--initial", "data", "--summary", "s.json")  # as without it
+        self.assertEqual(self.read_json("s.json")["method"], "direct")
+
+    def test_numbers_that_state_nothing(self):
+        for flag in ("--stop-deviation", "--stop-gradient", "--stop-relative-gradient", "--max-iterations", "--threads"):
+            for value in ("inf", "nan", "-1", "1e400"):
+                self.bad(2, f"{flag}: {value} is not a finite number, 0 or more", "fit", "r.csv", "-n", 8, f"{flag}={value}")
+        for flag in ("--tolerance", "--chord-tolerance", "--max-control-points"):
+            for value in ("inf", "nan", "-1", "0"):
+                self.bad(2, f"{flag}: {value} is not a finite number above 0", "fit", "r.csv", f"{flag}={value}")
+        self.bad(2, "--spacing inf: a finite number is needed", "fit", "r.csv", "--heights", "--spacing", "1,inf")
+        self.bad(2, "--closed C inf: a finite number is needed", "fit", "r.csv", "-n", 8, "--closed=Cinf")
+        self.bad(2, "--closed C1e300: C0 to C8 is needed", "fit", "r.csv", "-n", 8, "--closed=C1e300")
+
+    def test_axes_that_cannot_close(self):
+        self.bad(2, "--closed 0,0: axis 0 is named twice", "fit", "p.csv", "--grid", "9x9", "-n", "5x5", "--closed=0,0")
+        for points, *project in (("p.csv", "--project", "xy"), (self.write("c.obj", "".join(f"v {i % 7} {i // 7} {i % 3}\n" for i in range(49))),)):
+            for closed in ("--closed", "--closed=1", "--closed=0,1"):
+                self.bad(2, "closed: a cloud's parameters are its points' coordinates in a plane, where no axis closes; give it parameters that go round",
+                         "fit", points, *project, "-n", "5x5", closed)
+            self.bad(2, "--closed 2: the axes are 0 to 1", "fit", points, *project, "-n", "5x5", "--closed=2")
+
+    def test_a_cloud_with_parameters_closes_the_axis_that_is_named(self):
+        rng = np.random.default_rng(4)
+        u, v = rng.random((2, 600))
+        points = np.c_[np.cos(2 * np.pi * u), np.sin(2 * np.pi * u), v]
+        np.savetxt(self.folder / "tube.csv", points, delimiter=",")
+        np.savetxt(self.folder / "uv.txt", np.c_[u, v])
+        self.good("fit", "tube.csv", "--parameters", "uv.txt", "-n", "12x5", "--closed=0", "-q", "-o", "t.json", "--summary", "s.json")
+        spline, summary = self.read_json("t.json"), self.read_json("s.json")
+        self.assertEqual((spline["closed"], spline["control_shape"], summary["control_shape"]), ([True, False], [15, 5], [12, 5]))
+        self.assertLess(summary["max_deviation"], 1e-3)  # 12 cubic pieces of a circle: 3e-4
 
     def test_files(self):
         self.bad(3, "none.csv: cannot be read: No such file or directory", "fit", "none.csv", "-n", 8)
@@ -199,7 +249,7 @@ class Refusals(Command):
         self.bad(2, "axis 0: parameters [0, 1] are outside the knots' domain [0, 0.9]", "fit", "r.csv", "--knots", knots)
         parameters = self.write("t.txt", "\n".join(["0"] * 29 + ["1"]))
         self.bad(2, "axis 0: no samples in knot spans [0.2, 0.4], [0.4, 0.6], [0.6, 0.8]: the direct solver cannot determine every control point "
-                    "(Schoenberg-Whitney); use an iterative method such as --method cg, or --smooth",
+                    "(Schoenberg-Whitney); use an iterative method such as cg, or smoothing",
                  "fit", "r.csv", "--parameters", parameters, "--knots", "uniform", "-n", 8, "--method", "direct")
 
     def test_words(self):
@@ -216,7 +266,7 @@ class Refusals(Command):
 
 
     def test_methods_that_need_more(self):
-        self.bad(2, "epia: state where to stop: a deviation (--stop-deviation) or a number of control points", "fit", "r.csv", "--method", "epia")
+        self.bad(2, "epia: state where to stop: a stop deviation or a number of control points", "fit", "r.csv", "--method", "epia")
         self.bad(2, "axis 0: pia needs as many control points as samples, got 8 and 30", "fit", "r.csv", "--method", "pia", "-n", 8)
         self.bad(2, "interpolated sample 30: the samples are 0 to 29", "fit", "r.csv", "-n", 8, "--interpolate", "0,30")
         self.bad(2, "interpolated sample 4 is given twice", "fit", "r.csv", "-n", 8, "--interpolate", "4,4")

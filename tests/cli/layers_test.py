@@ -25,6 +25,13 @@ class Layers(unittest.TestCase):
         for file in STAGES.glob("*/*.cpp"):
             self.assertIn(f"{file.parent.name}/{file.name}", listed)
 
+    def test_the_library_names_no_flag_of_the_command(self):
+        """Its words are for every caller: options by the names that they have in it."""
+        for file in [*STAGES.glob("*/*.[ch]pp"), *(ROOT / "cad").rglob("*.[ch]pp")]:
+            for line in file.read_text().splitlines():
+                if not file.name.endswith("_test.cpp"):
+                    self.assertNotRegex(re.sub("//.*", "", line), r'"[^"]*--\w', file.relative_to(ROOT))
+
     def test_files_stay_small(self):
         for file in [*STAGES.rglob("*.[ch]pp"), *(ROOT / "apps").rglob("*.[ch]pp")]:
             if not file.name.endswith("_test.cpp"):

@@ -353,7 +353,7 @@ class Tolerance(InFolder):
         self.fit(path, "--tolerance", 1e-2)
         (self.folder / "o.json").rename(self.folder / "rose.json")
         for message, *arguments in (
-            ("--tolerance 0: must be positive", "--tolerance", 0),
+            ("--tolerance: 0 is not a finite number above 0", "--tolerance", 0),
             ("--tolerance and --control-points: one of them states the size; --max-control-points bounds a tolerance", "--tolerance", 1, "-n", 9),
             ("a fit to a tolerance cannot smooth; direct, lspia, mlspia, ... can, without what else is asked", "--tolerance", 1, "--smooth", "auto"),
             ("closed: continuity C3 at the seam is more than degree 3 has anywhere, C2", "--tolerance", 1, "--closed=C3"),

@@ -83,6 +83,34 @@ class Goals(Verdicts):
             self.assertEqual("4 samples hit to" in words, status == 0)
             self.assertEqual("4 samples missed by up to" in words, status == 4)
 
+    def test_a_tangent_turned_round_is_said_without_a_number(self):
+        points = self.save("w.csv", wave(60))
+        spline, _, _ = self.fit(0, points, "-n", 9)
+        self.save("back.csv", control_points(spline)[::-1])  # from here the curve runs the other way
+        step = wave(60)[31] - wave(60)[29]
+        (self.folder / "t.csv").write_text(f"30,{step[0]!r},{step[1]!r}\n")
+        options = [points, "-n", 9, "-m", "clspia", "--tangents", "t.csv", "--initial", "back.csv", "--max-iterations"]
+        spline, report, words = self.fit(4, *options, 0)
+        self.assertLess(BSpline(np.array(spline["knots"][0]), control_points(spline), 3)(chord(wave(60))[30], nu=1) @ step, 0)
+        self.assertNotIn("null", (self.folder / "r.json").read_text())
+        self.assertNotIn("tangent_error", report)
+        self.assertEqual(report["goals"], [{"goal": "tangents", "stated": 1e-9, "met": False}])
+        self.assertIn("runs against the stated direction", report["notes"][0])
+        self.assertIn("1 tangent missed, turned round", words)
+        self.assertNotIn("inf", words)
+        self.assertLess(self.fit(0, *options, 100000)[1]["tangent_error"], 1e-9)
+
+    def test_a_tangent_against_the_order_of_a_grid_is_refused(self):
+        u, v = np.meshgrid(np.linspace(0, 1, 9), np.linspace(0, 1, 7), indexing="ij")
+        np.save(self.folder / "g.npy", np.stack([u, v, np.sin(3 * u) * v], axis=-1))
+        for sample in (0, 31, 62):
+            for axis, direction in ((0, (-1, 0.5, 0)), (1, (0.5, -1, 0))):
+                row = f"{sample},{axis},{','.join(map(str, direction))}\n"
+                (self.folder / "t.csv").write_text(row)
+                self.refused(f"tangent at sample {sample}: it points against the order of the samples; reverse its sign", "g.npy", "-n", "5x5", "--tangents", "t.csv")
+                (self.folder / "t.csv").write_text(f"{sample},{axis},{','.join(str(-x) for x in direction)}\n")
+                self.good("fit", "g.npy", "-n", "5x5", "--tangents", "t.csv", "-q")
+
     def test_closed_pia_interpolates_a_torus(self):
         self.good("generate", "torus", "-o", "t.npy")
         spline, _, _ = self.fit(0, "t.npy", "-m", "pia", "-n", "60x40", "--closed=0,1", "--max-iterations", 40)
@@ -113,6 +141,48 @@ class Goals(Verdicts):
         self.assertLessEqual(largest_distance(spline, data), 1e-3 * (1 + 1e-9))
         _, report, _ = self.fit(4, "w.csv", "-n", 6, "--stop-deviation", 1e-6)
         self.assertEqual(report["method"], "direct")
+
+
+class KeptShape(Verdicts):
+    def away(self, spline, data):
+        return np.linalg.norm(evaluate(spline, chord(data)) - data, axis=1).max()
+
+    def test_a_straight_start_is_no_lock(self):
+        """Where nothing bends yet a polygon may begin to; from zero it comes to the samples."""
+        t = np.arange(12.0)
+        for slope in (1, 0.37):
+            for shift in (0, 1000):
+                data = np.c_[shift + t, shift + slope * t]
+                for shape in ("convexity", "inflections"):
+                    options = [self.save("l.csv", data), "-n", 4, "-m", "lspia", "--preserve", shape]
+                    spline, report, _ = self.fit(0, *options)
+                    self.assertEqual((report["termination"], report["inflections"]), ("converged", 0))
+                    self.assertLess(self.away(spline, data), 1e-9)
+                    done = self.run_batten("fit", *options, "--initial", "zero", "-o", "s.json")
+                    self.assertIn(done.returncode, (0, 4))
+                    self.assertLess(self.away(json.loads((self.folder / "s.json").read_text()), data), 1e-3)
+                spline, report, _ = self.fit(0, "l.csv", "-m", "pia", "-n", 12, "--preserve", "convexity", "--initial", "zero")
+                self.assertLess(self.away(spline, data), 1e-6)
+
+    def test_a_lock_far_from_the_samples_has_not_reached_its_stop(self):
+        t = np.arange(12.0)
+        data = np.c_[1000 + t, 1000 + 0.1 * (t - 6) ** 2]
+        for method, n in (("lspia", 4), ("mlspia", 12)):
+            for unit in (1.0, 2.0 ** 600):
+                np.save(self.folder / "a.npy", data * unit)
+                spline, report, words = self.fit(4, "a.npy", "-n", n, "-m", method, "--preserve", "convexity", "--initial", "zero")
+                self.assertEqual(report["termination"], "stalled")
+                spline["control_points"] = (np.array(spline["control_points"]) / unit).tolist()
+                self.assertAlmostEqual(self.away(spline, data) / (report["max_deviation"] / unit), 1, 9)
+                self.assertGreater(report["max_deviation"] / unit, 1)
+                self.assertGreater(report["held_back"] / unit, 1)
+                goal, = (goal for goal in report["goals"] if not goal["met"])
+                self.assertEqual((goal["goal"], goal["stated"]), ("relative gradient", 1e-10))
+                self.assertAlmostEqual(goal["reached"], report["gradient_norm"] / report["first_gradient_norm"], 12)
+                self.assertIn("shape       it locked the iteration, which was to move a control point by ", words)
+            spline, report, _ = self.fit(0, "a.npy", "-n", 4, "-m", method, "--preserve", "convexity")
+            self.assertEqual(report["termination"], "converged")
+            self.assertNotIn("held_back", report)
 
 
 class Sameness(Verdicts):
@@ -177,8 +247,8 @@ class Table(Verdicts):
         table = [[cell.strip() for cell in line.strip("|").split("|")] for line in self.run_batten("methods", "--table").stdout.splitlines()]
         head = table[0]
         rows = {row[0]: dict(zip(head[1:], row[1:])) for row in table[2:]}
-        flags = {"weigh samples": ["--weights", "weights.txt"], "smooth": ["--smooth", "1e-6"], "record a history": ["--history"],
-                 "pass through samples exactly": ["--interpolate", "ends"], "set outliers aside": ["--robust"]}
+        flags = {"weigh samples": ["--weights", "weights.txt"], "smooth": ["--smooth", "1e-6"], "record a history": ["--history", "--summary", "r.json"],
+                 "pass through samples exactly": ["--interpolate", "ends"], "set outliers aside": ["--robust"], "start from stated control points": ["--initial", "zero"]}
         for words, flag in flags.items():
             for method, cell in rows[words].items():
                 size = {"search": ["-t", 0.01], "pia": [], "epia": ["--stop-deviation", 0.01]}.get(method, ["-n", 12])

@@ -99,9 +99,8 @@ TEST(LinZhang, a_cloud_with_parameters_converges) {
 TEST(LinZhang, refusals) {
     const Samples rose = generate("rose");
     FitOptions options = epia(0, 0.6);
-    EXPECT_EQ(
-        testing::message_of<InvalidInput>([&] { fit(rose, options); }),
-        "epia: state where to stop: a deviation (--stop-deviation) or a number of control points");
+    EXPECT_EQ(testing::message_of<InvalidInput>([&] { fit(rose, options); }),
+              "epia: state where to stop: a stop deviation or a number of control points");
     options.shape.control_points = {30};
     options.method.settings.clear();
     options.shape.parameters = Parameters{{}, PointSet({0, 0, 1, 1}, 2)};

@@ -83,7 +83,7 @@ Choice choose(const Problem& problem) {
     if (const std::string gap = gap_of(problem); !gap.empty())
         throw InvalidInput(fmt::format(
             "{}: the direct solver cannot determine every control point (Schoenberg-Whitney); use "
-            "an iterative method such as --method cg, or --smooth",
+            "an iterative method such as cg, or smoothing",
             gap));
     return {&named, {}};
 }

@@ -79,8 +79,8 @@ Fitted fit_epia(const Problem& given, std::string_view) {
     if (given.axes.count() > 2)
         throw InvalidInput("epia: sequences and grids of 2 axes are possible");
     if (!(given.options.stop.deviation > 0) && given.axes.control_points.empty())
-        throw InvalidInput("epia: state where to stop: a deviation (--stop-deviation) or a number "
-                           "of control points");
+        throw InvalidInput("epia: state where to stop: a stop deviation or a number of control "
+                           "points");
     Stopwatch watch;
     const std::vector<Index> repeated = repetitions(given.samples);
     const Subset distinct = Subset::without(repeated, given.samples.size());

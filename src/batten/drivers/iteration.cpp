@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <limits>
 
 namespace batten {
 
@@ -75,12 +76,20 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     const auto inflections = [&] { // of the polygon where it stands: rounding can bend it
         return inflection_count(start.centre.empty() ? course.control
                                                      : uncentred(course.control, start.centre),
-                                axes[0].closure());
+                                axes[0].closure(), kept_roundings);
     };
-    if (limit) report.allowed_inflections = inflections();
+    StepLimit watched;
+    double wanted = 0;
+    if (limit) {
+        report.allowed_inflections = inflections();
+        watched = [&](const PointSet& polygon, PointSet& moves) {
+            wanted = largest_length(moves);
+            limit(polygon, moves);
+        };
+    }
     const Summary summary =
         iterate(method, course.control, options.stop,
-                {recording(options, deviation, report), limit, deviation, start.centre});
+                {recording(options, deviation, report), watched, deviation, start.centre});
     report.method = method.name();
     report.termination = summary.termination;
     report.iterations = summary.iterations;
@@ -91,6 +100,8 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     report.settings = method.settings();
     if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
     if (limit) report.inflections = inflections();
+    const double rounding = std::numeric_limits<double>::epsilon() * largest_length(course.control);
+    if (summary.termination == Termination::stalled && wanted > rounding) report.held_back = wanted;
     return course;
 }
 

@@ -38,7 +38,7 @@ Equations assembled(const Problem& problem, std::string_view method) {
         const Subset rest = Subset::without(exact, problem.samples.size());
         if (rest.size() == 0)
             throw InvalidInput("clspia: every sample is interpolated, none is left to approximate; "
-                               "use --method direct");
+                               "use method direct");
         result.system =
             assemble(result.axes, rest.of(problem.samples), rest.of(problem.parameters));
     } else {

@@ -4,6 +4,7 @@
 #include <batten/problem/held.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace batten {
@@ -61,6 +62,9 @@ std::vector<Goal> judged(const FitReport& report, const Problem& problem,
     if (stop.gradient > 0 && report.iterated())
         state("gradient", stop.gradient, report.gradient_norm);
     const double least = exactness * problem.size;
+    if (report.held_back > least && stop.relative_gradient > 0) // it locked before its stop
+        state("relative gradient", stop.relative_gradient,
+              report.gradient_norm / report.first_gradient_norm);
     if (report.interpolated > 0) state("exact samples", least, report.constraint_error);
     if (report.tangents > 0) state("tangents", exactness, report.tangent_error);
     if (report.boundaries > 0) state("boundaries", least, report.boundary_error);
@@ -104,7 +108,7 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     report.kind = kind_name(spline);
     report.samples = samples.size();
     report.dim = samples.dim();
-    report.control_shape = spline.control_shape();
+    report.control_shape = free_shape(spline.axes());
     for (const KnotVector& axis : spline.axes()) {
         report.degree.push_back(axis.degree());
         report.closures.push_back(axis.closure());
@@ -121,6 +125,9 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     report.constraint_error = interpolation_error(spline, samples, fitted.parameters, hold);
     report.tangents = static_cast<Index>(hold.tangents.size());
     report.tangent_error = tangent_error(spline, samples, fitted.parameters, hold.tangents);
+    if (!std::isfinite(report.tangent_error))
+        report.notes.emplace_back("tangents: at a sample the spline runs against the stated "
+                                  "direction, or has none; no number says how far off that is");
     report.boundaries = static_cast<Index>(hold.boundaries.size());
     report.boundary_error = boundary_error(spline, hold.boundaries);
     if (problem.options.keep_history && report.history.empty()) // nothing came before the answer

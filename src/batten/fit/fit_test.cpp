@@ -92,7 +92,8 @@ TEST(Fit, a_volume_and_a_closed_surface_are_within_their_sampling) {
     FitOptions options = size({16, 12});
     options.shape.closures = {Closure::closed};
     const FitResult torus = fit(generate("torus"), options);
-    EXPECT_EQ(torus.report.control_shape, (std::vector<Index>{19, 15}));
+    EXPECT_EQ(torus.spline.control_shape(), (std::vector<Index>{19, 15}));
+    EXPECT_EQ(torus.report.control_shape, options.shape.control_points);
     // 16 cubic pieces of a circle of radius 4: (2 pi / 16)^4 / 720 * 4 and more
     EXPECT_LT(reference::largest(
                   reference::deviations(torus.spline, generate("torus").points, torus.parameters)),
@@ -159,7 +160,7 @@ TEST(Fit, samples_that_determine_too_little_are_named_or_iterated) {
     EXPECT_EQ(message_of<InvalidInput>([&] { fit(sequence(q), options); }),
               "axis 0: no samples in knot spans [0.3, 0.4], [0.4, 0.5], [0.5, 0.6], ...: the "
               "direct solver cannot determine every control point "
-              "(Schoenberg-Whitney); use an iterative method such as --method cg, or --smooth");
+              "(Schoenberg-Whitney); use an iterative method such as cg, or smoothing");
     options.method.name = "auto";
     const FitResult result = fit(sequence(q), options);
     EXPECT_EQ(result.report.method, "cg");
@@ -217,6 +218,14 @@ TEST(Fit, refuses_what_breaks_a_rule) {
     options.tolerance.corner_samples = {5};
     EXPECT_EQ(refusal(options),
               "corners: samples are given, but the corners are not the given ones");
+    Samples cloud = generate("peaks", {9, 9});
+    cloud.grid.clear();
+    options = size({5, 5});
+    options.shape.projection = Projection::xy;
+    options.shape.closures = {Closure::open, Closure::closed};
+    EXPECT_EQ(message_of<InvalidInput>([&] { fit(cloud, options); }),
+              "closed: a cloud's parameters are its points' coordinates in a plane, where no axis "
+              "closes; give it parameters that go round");
     options = size({6});
     options.cancelled = [] { return true; };
     EXPECT_EQ(message_of<Cancelled>([&] { fit(rose, options); }), "the fit was cancelled");

@@ -73,12 +73,13 @@ FitResult rescaled(FitResult result, double factor) {
     for (double* length :
          {&report.deviation.maximum, &report.deviation.rms, &report.gradient_norm,
           &report.first_gradient_norm, &report.constraint_error, &report.boundary_error,
-          &report.tolerance, &report.noise_level, &report.data_size})
+          &report.tolerance, &report.noise_level, &report.data_size, &report.held_back})
         *length *= factor;
     scale(result.deviations, factor);
     scale(report.settings, factor);
     for (Goal& goal : report.goals)
-        if (goal.name != "inflections" && goal.name != "tangents") {
+        if (goal.name != "inflections" && goal.name != "tangents" &&
+            goal.name != "relative gradient") {
             goal.stated *= factor;
             goal.reached *= factor;
         }

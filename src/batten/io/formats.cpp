@@ -52,13 +52,30 @@ std::vector<SplineFormat>& registry() {
         {".svg", "picture of a planar curve, exact cubic Beziers", svg_picture, {}},
         {".obj", "Wavefront free-form curves and surfaces", obj_text, {}, true},
         {".g2", "GoTools curves, surfaces and volumes", g2_text, {}, true},
-        {".stl", "triangles of surfaces, within --chord-tolerance", stl_binary, {}, true},
-        {".vts", "VTK structured grid: the spline sampled", vts_text, {}},
+        {".stl",
+         "triangles of surfaces, within the chord tolerance",
+         stl_binary,
+         {},
+         true,
+         SceneDetail::chord_tolerance},
+        {".vts",
+         "VTK structured grid: the spline sampled",
+         vts_text,
+         {},
+         false,
+         SceneDetail::chord_tolerance},
         {".vtu",
          "VTK unstructured grid: samples with deviation, control net, spline",
          vtu_text,
-         {}},
-        {".csv", "evaluated points, within --chord-tolerance", evaluated_text, {}},
+         {},
+         false,
+         SceneDetail::chord_tolerance},
+        {".csv",
+         "evaluated points, within the chord tolerance",
+         evaluated_text,
+         {},
+         false,
+         SceneDetail::chord_tolerance},
     };
     return all;
 }
@@ -82,21 +99,6 @@ const PointFormat& point_format(const std::filesystem::path& path) {
 
 /// Formats that are known once a library of their own has been linked and asked to.
 constexpr std::string_view cad_extensions[] = {".step", ".stp", ".igs", ".iges"};
-
-const SplineFormat& spline_format(const std::filesystem::path& path) {
-    const std::string wanted = extension_or(path, ".json");
-    std::vector<std::string_view> known;
-    for (const SplineFormat& format : registry()) {
-        if (format.extension == wanted) return format;
-        known.push_back(format.extension);
-    }
-    if (std::ranges::find(cad_extensions, wanted) != std::end(cad_extensions))
-        throw InvalidInput(fmt::format("{}: {} files need batten::cad: link it and call "
-                                       "batten::cad::register_formats() first",
-                                       path.string(), wanted));
-    throw InvalidInput(fmt::format("{}: unknown extension '{}'; known: {}", path.string(), wanted,
-                                   fmt::join(known, ", ")));
-}
 
 NumberArray read_numbers(const std::filesystem::path& path) {
     const PointFormat& format = point_format(path);
@@ -126,7 +128,7 @@ Samples points_from(NumberArray array, const std::vector<Index>& grid,
         throw InvalidInput(
             fmt::format("{}: {} means points of dimension {}, outside 1 to 16{}", path.string(),
                         fmt::join(shape, "x"), dim,
-                        shape.size() == 2 ? "; --heights reads it as a grid of heights" : ""));
+                        shape.size() == 2 ? "; heights reads it as a grid of heights" : ""));
     Samples samples;
     if (shape.size() > 2) samples.grid.assign(shape.begin(), shape.end() - 1);
     if (!grid.empty()) samples.grid = grid;
@@ -189,6 +191,21 @@ void write_points(const std::filesystem::path& path, const Points& points,
 
 std::span<const SplineFormat> spline_formats() {
     return registry();
+}
+
+const SplineFormat& spline_format(const std::filesystem::path& path) {
+    const std::string wanted = extension_or(path, ".json");
+    std::vector<std::string_view> known;
+    for (const SplineFormat& format : registry()) {
+        if (format.extension == wanted) return format;
+        known.push_back(format.extension);
+    }
+    if (std::ranges::find(cad_extensions, wanted) != std::end(cad_extensions))
+        throw InvalidInput(fmt::format("{}: {} files need batten::cad: link it and call "
+                                       "batten::cad::register_formats() first",
+                                       path.string(), wanted));
+    throw InvalidInput(fmt::format("{}: unknown extension '{}'; known: {}", path.string(), wanted,
+                                   fmt::join(known, ", ")));
 }
 
 void register_format(SplineFormat format) {

@@ -166,7 +166,7 @@ TEST_F(Files, npy_of_other_types_and_orders_is_read) {
     EXPECT_EQ(refusal("c.npy", std::string("\x93NUMPY\x01\x00\x76\x00{'de", 14)),
               "c.npy: the file ends inside the header: 118 bytes stated, 4 there");
     EXPECT_EQ(refusal("c.npy", header("|u1", false, "2, 20") + std::string(40, 'x')),
-              "c.npy: 2x20 means points of dimension 20, outside 1 to 16; --heights reads it as a "
+              "c.npy: 2x20 means points of dimension 20, outside 1 to 16; heights reads it as a "
               "grid of heights");
 }
 

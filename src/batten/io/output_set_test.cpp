@@ -3,10 +3,11 @@
 #include <batten/io/output_set.hpp>
 #include <batten/io/points_file.hpp>
 #include <batten/io/spline_file.hpp>
-#include <batten/io/staged_names.hpp>
+#include <batten/io/staged_file.hpp>
 
 #include <array>
 #include <cmath>
+#include <fcntl.h>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -63,7 +64,6 @@ TEST_F(Outputs, vanish_with_a_set_that_is_left) {
         OutputSet set;
         set.add(path("a"), "one");
         set.add(path("b"), "two");
-        EXPECT_EQ(files(), 3);
         EXPECT_EQ(message_of<FileError>([&] { set.add(path("no/c"), "three"); }),
                   path("no/c").string() + ": the folder " + path("no").string() +
                       " does not exist");
@@ -77,32 +77,64 @@ TEST_F(Outputs, are_taken_back_when_one_cannot_have_its_name) {
     OutputSet set;
     set.add(path("a"), "one");
     set.add(path("b"), "two");
-    set.add(path("c"), "three");
-    fs::create_directory(path("c")); // since it was asked
-    fs::create_directory(path("c/d"));
-    // two names are exchanged whatever they are, so a folder is no hindrance: a missing file is
-    for (const auto& entry : fs::directory_iterator(folder_))
-        if (entry.path().extension() == ".part" &&
-            message_of<FileError>([&] {
-                std::ifstream staged(entry.path());
-                if (std::string(std::istreambuf_iterator<char>(staged), {}) == "three")
-                    throw FileError("it");
-            }) == "it")
-            fs::remove(entry.path());
+    fs::create_directory(path("folder"));
+    set.add(path("folder/c"), "three");
+    fs::remove_all(path("folder")); // since it was asked
     EXPECT_EQ(message_of<FileError>([&] { set.put_in_place(); }),
-              path("c").string() + ": cannot be replaced: No such file or directory");
+              path("folder/c").string() + ": cannot be replaced: No such file or directory");
     EXPECT_EQ(content("a"), "old");
     EXPECT_FALSE(fs::exists(path("b")));
 }
 
-TEST_F(Outputs, are_removed_for_a_program_that_ends) {
-    OutputSet set;
-    set.add(path("a"), "one");
-    set.add(path("b"), "two");
+TEST_F(Outputs, with_temporary_names_are_removed_for_a_program_that_ends) {
+    const StagedFile one("a", path("a"), "one", Waiting::under_a_temporary_name);
+    const StagedFile two("b", path("b"), "two", Waiting::under_a_temporary_name);
     EXPECT_EQ(files(), 2);
     remove_staged_files();
     EXPECT_EQ(files(), 0);
     remove_staged_files();
+}
+
+/// Whether the folder's file system knows files without a name.
+bool knows_nameless_files(const fs::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_WRONLY | O_TMPFILE, 0666);
+    if (descriptor >= 0) ::close(descriptor);
+    return descriptor >= 0;
+}
+
+TEST_F(Outputs, wait_without_a_name_where_there_are_such_files) {
+    OutputSet set;
+    set.add(path("a"), "one");
+    EXPECT_EQ(files(), knows_nameless_files(folder_) ? 0 : 1);
+    set.put_in_place();
+    EXPECT_EQ(files(), 1);
+}
+
+TEST_F(Outputs, have_their_names_however_they_waited) {
+    for (Waiting waiting : {Waiting::nameless, Waiting::under_a_temporary_name}) {
+        fs::remove(path("new"));
+        std::ofstream(path("old")) << "old";
+        fs::permissions(path("old"), fs::perms::owner_read);
+        {
+            StagedFile replacing("old", path("old"), "one", waiting);
+            StagedFile created("new", path("new"), "two", waiting);
+            StagedFile late("new", path("new"), "three", waiting); // when the name is taken already
+            EXPECT_EQ(content("old"), "old");
+            for (StagedFile* file : {&replacing, &created, &late}) file->put_in_place();
+            EXPECT_EQ(content("old"), "one");
+            EXPECT_EQ(content("new"), "three");
+            late.take_back();
+            EXPECT_EQ(content("new"), "two");
+            created.take_back();
+            replacing.take_back();
+            EXPECT_EQ(content("old"), "old");
+            replacing.put_in_place();
+        }
+        EXPECT_EQ(content("old"), "one");
+        EXPECT_EQ(fs::status(path("old")).permissions(), fs::perms::owner_read);
+        EXPECT_EQ(files(), 1);
+        fs::remove(path("old"));
+    }
 }
 
 TEST_F(Outputs, are_told_apart_by_inode) {

@@ -40,6 +40,9 @@ struct Scene {
     }
 };
 
+/// What of a scene, beside splines and samples, a format shows.
+enum class SceneDetail { none, unit_and_date, chord_tolerance };
+
 /// A file format of splines, found by its extension (with the dot, lower case).
 struct SplineFormat {
     std::string extension;
@@ -50,10 +53,15 @@ struct SplineFormat {
     std::function<std::vector<Spline>(const std::filesystem::path&, const std::string&)> read;
     /// Whether a file may hold several splines.
     bool several = false;
+    SceneDetail shows = SceneDetail::none;
 };
 
 /// The formats known now, in order of registration.
 std::span<const SplineFormat> spline_formats();
+
+/// The format that the file's extension names, of a stream without extension JSON; throws
+/// InvalidInput for an unknown one.
+const SplineFormat& spline_format(const std::filesystem::path& path);
 
 /// Adds a format, before any thread uses the registry.
 void register_format(SplineFormat format);

@@ -7,13 +7,17 @@
 
 namespace batten {
 
-/// A complete file under a temporary name in the folder where it belongs; removed with the object
-/// unless it was put in place.
+/// How a complete file waits for its name: without any, so that nothing stays of a program that is
+/// killed, where the file system knows such files; else under a temporary one.
+enum class Waiting { nameless, under_a_temporary_name };
+
+/// A complete file in the folder where it belongs; gone with the object unless it was put in place.
 class StagedFile {
   public:
     /// `path`: the file to become, behind all links; `name` what the caller calls it. Throws
     /// FileError when it cannot be written.
-    StagedFile(std::filesystem::path name, std::filesystem::path path, std::string_view content);
+    StagedFile(std::filesystem::path name, std::filesystem::path path, std::string_view content,
+               Waiting waiting = Waiting::nameless);
     ~StagedFile();
     StagedFile(const StagedFile&) = delete;
     StagedFile& operator=(const StagedFile&) = delete;
@@ -29,7 +33,8 @@ class StagedFile {
 
     std::filesystem::path name_;
     std::filesystem::path path_;
-    StagedName temporary_;
+    StagedName temporary_; ///< a nameless file has it while it takes another's place
+    int nameless_ = -1;    ///< descriptor; -1: it has the temporary name already
     State state_ = State::staged;
 };
 

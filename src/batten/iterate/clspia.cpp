@@ -42,7 +42,7 @@ void Clspia::choose_outer_step() {
         normal = factorize(system_);
     } catch (const SolverError&) {
         throw InvalidInput("clspia: the samples that are not interpolated do not determine every "
-                           "control point; use --method direct");
+                           "control point; use method direct");
     }
     const ExtremeEigenvalues beta =
         SchurComplement(*normal, constraints_, system_.size()).eigenvalues();

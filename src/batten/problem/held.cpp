@@ -34,9 +34,13 @@ void check_tangent(const HeldTangent& tangent, const Samples& samples, SampleKin
     if (!std::isfinite(length) || (tangent.kind == TangentKind::direction && !(length > 0)))
         throw InvalidInput(
             fmt::format("tangent at sample {}: a finite vector of some length is needed", i));
-    if (kind == SampleKind::sequence && tangent.kind == TangentKind::direction) {
-        const auto before = samples.points[std::max<Index>(i - 1, 0)];
-        const auto after = samples.points[std::min(i + 1, m - 1)];
+    if (kind != SampleKind::cloud && tangent.kind == TangentKind::direction) {
+        const GridIndex grid(samples.shape());
+        const auto axis = static_cast<std::size_t>(tangent.axis);
+        const Index step = grid.stride(axis);
+        const Index at = grid.place(i)[axis];
+        const auto before = samples.points[at > 0 ? i - step : i];
+        const auto after = samples.points[at + 1 < grid.length(axis) ? i + step : i];
         std::vector<double> chord(before.size());
         for (std::size_t d = 0; d < chord.size(); ++d) chord[d] = after[d] - before[d];
         if (dot(chord, tangent.value) < 0)

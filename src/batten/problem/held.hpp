@@ -9,8 +9,8 @@ namespace batten {
 inline constexpr double exactness = 1e-9;
 
 /// Throws InvalidInput, naming the entry, when what must hold does not fit the samples: indices out
-/// of range or given twice, tangents of another dimension, of no length or against the order of a
-/// sequence, boundaries of an axis that is closed or does not exist, of another degree or
+/// of range or given twice, tangents of another dimension, of no length or against the order of
+/// the samples, boundaries of an axis that is closed or does not exist, of another degree or
 /// dimension.
 void check_held(const HoldOptions& hold, const Samples& samples, SampleKind kind,
                 const AxisPlan& axes);

@@ -5,6 +5,7 @@
 #include <batten/problem/held.hpp>
 #include <batten/problem/plan.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
@@ -101,6 +102,9 @@ Parameters seen(const Samples& samples, const ShapeOptions& shape) {
     if (shape.parametrization)
         throw InvalidInput("parametrize: a cloud's parameters are its points' coordinates in a "
                            "plane, not lengths along it");
+    if (std::ranges::count(shape.closures, Closure::closed) > 0)
+        throw InvalidInput("closed: a cloud's parameters are its points' coordinates in a plane, "
+                           "where no axis closes; give it parameters that go round");
     return projected(samples, shape.projection                 ? *shape.projection
                               : samples.order == Order::ground ? Projection::xy
                                                                : Projection::plane);

@@ -39,7 +39,7 @@ struct FitReport {
     Index samples = 0;
     Index dim = 0;
     std::vector<int> degree;
-    std::vector<Index> control_shape; ///< as stored; a closed axis repeats its first degree
+    std::vector<Index> control_shape; ///< free control points per axis, as sizes are stated
     std::vector<Closure> closures;
     std::string method;
     std::string method_reason; ///< why `auto` chose it; empty when the caller did
@@ -51,14 +51,17 @@ struct FitReport {
     double predicted_rate = 0; ///< 0 when the theory gives none
     double observed_rate = 0;  ///< 0 when the run was too short
     Deviation deviation;
-    Index interpolated = 0;         ///< samples that must be hit exactly
-    double constraint_error = 0;    ///< largest distance from one of them
-    Index tangents = 0;             ///< directions and derivatives that must hold
-    double tangent_error = 0;       ///< by how much they are missed, over the data's size
-    Index boundaries = 0;           ///< boundaries that must hold
-    double boundary_error = 0;      ///< largest distance from one of them
-    Index inflections = -1;         ///< of the control polygon, where they are kept; else -1
+    Index interpolated = 0;      ///< samples that must be hit exactly
+    double constraint_error = 0; ///< largest distance from one of them
+    Index tangents = 0;          ///< directions and derivatives that must hold
+    double tangent_error = 0;    ///< by how much they are missed, over the data's size; infinite:
+                                 ///< the spline runs against one, or has no direction there
+    Index boundaries = 0;        ///< boundaries that must hold
+    double boundary_error = 0;   ///< largest distance from one of them
+    Index inflections = -1;      ///< of the control polygon, where they are kept; else -1
     Index allowed_inflections = -1; ///< that the kept shape allows it; -1: not counted
+    double held_back = 0;         ///< longest move that was left to make when the kept shape locked
+                                  ///< the iteration; 0 where it did not
     Index curve_inflections = -1; ///< of a planar curve fitted to a tolerance, those larger than a
                                   ///< quarter of it; -1 where not counted
     Index data_inflections = -1;  ///< the same of the samples

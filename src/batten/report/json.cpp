@@ -24,13 +24,15 @@ Json history_json(const std::vector<HistoryEntry>& history) {
     return rows;
 }
 
+/// What no number says, as by how much a tangent turned round is missed, is left out.
 Json goals_json(const std::vector<Goal>& goals) {
     Json rows = Json::array();
-    for (const Goal& goal : goals)
-        rows.push_back({{"goal", goal.name},
-                        {"stated", number(goal.stated)},
-                        {"reached", number(goal.reached)},
-                        {"met", goal.met}});
+    for (const Goal& goal : goals) {
+        Json row{{"goal", goal.name}, {"stated", number(goal.stated)}};
+        if (std::isfinite(goal.reached)) row["reached"] = goal.reached;
+        row["met"] = goal.met;
+        rows.push_back(std::move(row));
+    }
     return rows;
 }
 
@@ -49,7 +51,7 @@ void add_held(Json& json, const FitReport& r) {
     }
     if (r.tangents > 0) {
         json["tangents"] = r.tangents;
-        json["tangent_error"] = number(r.tangent_error);
+        if (std::isfinite(r.tangent_error)) json["tangent_error"] = r.tangent_error;
     }
     if (r.boundaries > 0) {
         json["boundaries"] = r.boundaries;
@@ -57,6 +59,7 @@ void add_held(Json& json, const FitReport& r) {
     }
     if (r.inflections >= 0) json["inflections"] = r.inflections;
     if (r.allowed_inflections >= 0) json["allowed_inflections"] = r.allowed_inflections;
+    if (r.held_back > 0) json["held_back"] = r.held_back;
     if (r.curve_inflections >= 0) {
         json["curve_inflections"] = r.curve_inflections;
         json["data_inflections"] = r.data_inflections;

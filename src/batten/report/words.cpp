@@ -1,6 +1,7 @@
 #include <batten/problem/report.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -35,12 +36,9 @@ bool FitReport::goals_met() const {
 }
 
 std::string FitReport::brief() const {
-    std::vector<Index> shape = control_shape;
-    for (std::size_t k = 0; k < shape.size(); ++k)
-        if (closures[k] == Closure::closed) shape[k] -= degree[k];
     return fmt::format(
         "{} of degree {}, {} control points{}: {} samples within {:.4g} (rms {:.4g}), {}", kind,
-        fmt::join(degree, "x"), fmt::join(shape, "x"), closed_axes(closures),
+        fmt::join(degree, "x"), fmt::join(control_shape, "x"), closed_axes(closures),
         set_aside.empty()
             ? std::to_string(samples)
             : fmt::format("{} of {}", samples - static_cast<Index>(set_aside.size()), samples),
@@ -115,7 +113,9 @@ std::string held_words(Index count, std::string_view one, std::string_view many,
                        double error) {
     const bool met =
         std::ranges::all_of(r.goals, [&](const Goal& g) { return g.name != goal || g.met; });
-    return fmt::format("{} {} {} {:.2g}", count, count == 1 ? one : many,
+    const std::string_view noun = count == 1 ? one : many;
+    if (!std::isfinite(error)) return fmt::format("{} {} missed, turned round", count, noun);
+    return fmt::format("{} {} {} {:.2g}", count, noun,
                        met ? fmt::format("{} to", held) : "missed by up to", error);
 }
 
@@ -136,6 +136,10 @@ Lines exactness(const FitReport& r) {
                          ? fmt::format("{} inflections in the control polygon, {} allowed",
                                        r.inflections, r.allowed_inflections)
                          : fmt::format("{} inflections in the control polygon", r.inflections));
+    if (r.held_back > 0)
+        lines.emplace_back("shape", fmt::format("it locked the iteration, which was to move a "
+                                                "control point by {:.3g} more",
+                                                r.held_back));
     return lines;
 }
 
@@ -144,8 +148,11 @@ Lines missed_goals(const FitReport& r) {
     Lines lines;
     for (const Goal& goal : r.goals)
         if (!goal.met && goal.name != "tolerance")
-            lines.emplace_back("missed", fmt::format("{}: stated {:.6g}, reached {:.6g}", goal.name,
-                                                     goal.stated, goal.reached));
+            lines.emplace_back("missed",
+                               fmt::format("{}: stated {:.6g}, {}", goal.name, goal.stated,
+                                           std::isfinite(goal.reached)
+                                               ? fmt::format("reached {:.6g}", goal.reached)
+                                               : "turned round"));
     return lines;
 }
 

@@ -3,11 +3,10 @@
 namespace batten {
 
 void keep_turns(const PointSet& polygon, PointSet& moves, Closure closure, double threshold) {
-    const std::vector<int> wanted = turn_signs(polygon, closure);
     const auto same = [&](double part) {
         PointSet moved = polygon;
         add_scaled(moved, part, moves);
-        return turn_signs(moved, closure) == wanted;
+        return keeps_shape(polygon, moved, closure, certain_roundings, certain_roundings);
     };
     if (same(1)) return;
     double good = 0.5;

@@ -40,7 +40,7 @@ int turn_sign(std::span<const double> a, std::span<const double> b, std::span<co
     return t > 0 ? 1 : -1;
 }
 
-std::vector<int> turn_signs(const PointSet& polygon, Closure closure) {
+std::vector<int> turn_signs(const PointSet& polygon, Closure closure, double roundings) {
     const std::vector<Index> kept = distinct(polygon, closure);
     const std::size_t n = kept.size();
     std::vector<int> signs;
@@ -48,17 +48,32 @@ std::vector<int> turn_signs(const PointSet& polygon, Closure closure) {
     const std::size_t turns = closure == Closure::closed ? n : n - 2;
     for (std::size_t i = 0; i < turns; ++i)
         signs.push_back(turn_sign(polygon[kept[i % n]], polygon[kept[(i + 1) % n]],
-                                  polygon[kept[(i + 2) % n]]));
+                                  polygon[kept[(i + 2) % n]], roundings));
     return signs;
 }
 
-Index inflection_count(const PointSet& polygon, Closure closure) {
-    std::vector<int> signs = turn_signs(polygon, closure);
+Index inflection_count(const PointSet& polygon, Closure closure, double roundings) {
+    std::vector<int> signs = turn_signs(polygon, closure, roundings);
     std::erase(signs, 0);
     Index count = 0;
     for (std::size_t i = 1; i < signs.size(); ++i) count += signs[i] != signs[i - 1] ? 1 : 0;
     if (closure == Closure::closed && signs.size() > 1 && signs.back() != signs.front()) ++count;
     return count;
+}
+
+bool keeps_shape(const PointSet& polygon, const PointSet& moved, Closure closure, double roundings,
+                 double bend) {
+    const Index n = polygon.size();
+    const auto sign = [&](const PointSet& of, Index i, double certain) {
+        return turn_sign(of[i], of[(i + 1) % n], of[(i + 2) % n], certain);
+    };
+    for (Index i = 0; i < (closure == Closure::closed ? n : n - 2); ++i) {
+        const int before = sign(polygon, i, roundings);
+        if (sign(moved, i, roundings) != before && (before != 0 || sign(moved, i, bend) == 0))
+            return false;
+    }
+    return inflection_count(moved, closure, roundings) <=
+           inflection_count(polygon, closure, roundings);
 }
 
 } // namespace batten

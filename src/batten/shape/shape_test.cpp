@@ -31,6 +31,14 @@ TEST(Polygon, counts_turns_and_inflections) {
     EXPECT_EQ(turn_signs(PointSet({0, 0, 1, 0, 2, 0}, 2)), (std::vector<int>{0}));
 }
 
+void keep_turns_by_default(const PointSet& polygon, PointSet& moves) {
+    keep_turns(polygon, moves);
+}
+
+void keep_inflections_by_default(const PointSet& polygon, PointSet& moves) {
+    keep_inflections(polygon, moves);
+}
+
 TEST(Limits, keep_every_turn_for_any_moves) {
     int would_break = 0;
     for (unsigned seed = 0; seed < 200; ++seed) {
@@ -74,6 +82,40 @@ TEST(Limits, rays_hold_only_on_the_neighbours_side) {
     EXPECT_DOUBLE_EQ(fall(-1, Barrier::rays), held);
     EXPECT_DOUBLE_EQ(fall(2, Barrier::lines), held); // behind point 1, where no ray is
     EXPECT_DOUBLE_EQ(fall(2, Barrier::rays), -3);
+}
+
+TEST(Limits, let_what_is_straight_bend_but_not_to_and_fro) {
+    const PointSet point(6, 2); // all in one place
+    const PointSet line({0, 0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0}, 2);
+    const PointSet arc({0, 0, 1, 0.5, 2, 0.8, 3, 0.8, 4, 0.5, 5, 0}, 2);
+    const PointSet wave({0, 0, 1, 0.5, 2, -0.8, 3, 0.8, 4, -0.5, 5, 0}, 2);
+    const auto limits = {&keep_turns_by_default, &keep_inflections_by_default};
+    for (const auto limit : limits)
+        for (const PointSet* start : {&point, &line}) {
+            PointSet moves = arc;
+            add_scaled(moves, -1, *start);
+            const PointSet free = moves;
+            limit(*start, moves);
+            EXPECT_EQ(moves.values(), free.values());
+            moves = wave;
+            add_scaled(moves, -1, *start);
+            limit(*start, moves);
+            PointSet moved = *start;
+            add_scaled(moved, 1, moves);
+            EXPECT_EQ(inflection_count(moved), 0);
+        }
+    // one straight place between two bends, which it may follow and not oppose
+    const PointSet flat({0, 0, 1, 1, 2, 1, 3, 1, 4, 1, 5, 0}, 2);
+    for (const auto limit : limits)
+        for (double up : {0.1, -0.1}) {
+            PointSet moves(6, 2);
+            moves(2, 1) = moves(3, 1) = up;
+            limit(flat, moves);
+            EXPECT_EQ(moves(2, 1) == up && moves(3, 1) == up, up > 0);
+            PointSet moved = flat;
+            add_scaled(moved, 1, moves);
+            EXPECT_EQ(inflection_count(moved), 0);
+        }
 }
 
 TEST(Limits, leave_harmless_moves_alone) {
