@@ -50,7 +50,7 @@ void add_export_flags(CLI::App& app, ExportFlags& flags) {
 
 void check(const ExportFlags& flags, const CLI::App& app, const std::vector<std::string>& outputs,
            const std::string& report) {
-    const auto needs = [&](const char* flag, SceneDetail detail, const char* others = "") {
+    const auto needs = [&](const char* flag, SceneDetail detail, std::string_view others = "") {
         const bool shown = std::ranges::any_of(outputs, [&](const std::string& output) {
             return spline_format(output).shows == detail;
         });
@@ -58,7 +58,8 @@ void check(const ExportFlags& flags, const CLI::App& app, const std::vector<std:
             throw InvalidInput(fmt::format("{}: it is for {}{}", flag, showing(detail), others));
     };
     const bool has_page = app.get_option_no_throw("--report") != nullptr;
-    if (report.empty()) needs("--unit", SceneDetail::unit_and_date, has_page ? ", --report" : "");
+    // a conversion may say of any spline what its coordinates are
+    if (has_page && report.empty()) needs("--unit", SceneDetail::unit_and_date, ", --report");
     needs("--date", SceneDetail::unit_and_date);
     needs("--chord-tolerance", SceneDetail::chord_tolerance);
     if (!flags.date.empty() && !is_date(flags.date))

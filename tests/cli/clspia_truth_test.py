@@ -19,23 +19,23 @@ class ClspiaTruth(InFolder):
         self.t = np.linspace(0, 1, 200)
         self.data = np.c_[np.cos(4 * self.t) + self.t, np.sin(6 * self.t)] + 0.02 * np.random.default_rng(3).normal(size=(200, 2))
 
-    def fit(self, data, *arguments):
+    def fit(self, data, *arguments, held=HELD):
         """(summary, the spline at the samples, its distance from the dense optimum), both over the data's size."""
         np.savetxt(self.folder / "p.csv", data, delimiter=",", fmt="%.17g")
         np.savetxt(self.folder / "t.txt", self.t, fmt="%.17g")
-        done = subprocess.run([BATTEN, "fit", "p.csv", "-n", str(COUNT), "-m", "clspia", "--parameters", "t.txt", "--interpolate", ",".join(map(str, HELD)), "-q",
+        done = subprocess.run([BATTEN, "fit", "p.csv", "-n", str(COUNT), "-m", "clspia", "--parameters", "t.txt", "--interpolate", ",".join(map(str, held)), "-q",
                                "-o", "o.json", "--summary", "s.json", *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
         self.assertIn(done.returncode, (0, 4), done.stderr)
         spline, summary = json.loads((self.folder / "o.json").read_text()), json.loads((self.folder / "s.json").read_text())
-        matrix = BSpline.design_matrix(self.t, np.array(spline["knots"][0]), 3).toarray()
-        keep = np.setdiff1d(np.arange(200), HELD)
+        matrix = BSpline.design_matrix(self.t, np.array(spline["knots"][0]), spline["degree"][0]).toarray()
+        keep = np.setdiff1d(np.arange(len(data)), held)
         size = np.linalg.norm(np.ptp(data, axis=0))
         origin = data[0]
-        A, B = matrix[keep], matrix[HELD]
-        kkt = np.block([[A.T @ A, B.T], [B, np.zeros((len(HELD), len(HELD)))]])
-        best = np.linalg.solve(kkt, np.r_[A.T @ (data[keep] - origin), data[HELD] - origin])[:COUNT] + origin
+        A, B = matrix[keep], matrix[held]
+        kkt = np.block([[A.T @ A, B.T], [B, np.zeros((len(held), len(held)))]])
+        best = np.linalg.solve(kkt, np.r_[A.T @ (data[keep] - origin), data[held] - origin])[:COUNT] + origin
         control = np.array(spline["control_points"])
-        miss = np.linalg.norm(matrix[HELD] @ control - data[HELD], axis=1).max() / size
+        miss = np.linalg.norm(matrix[held] @ control - data[held], axis=1).max() / size
         return summary, miss, np.abs(control - best).max() / size
 
     def test_converged_means_hit_whatever_the_stop(self):
@@ -59,6 +59,18 @@ class ClspiaTruth(InFolder):
             self.assertEqual(summary["termination"], "converged", scale)
             self.assertLess(miss, EXACT)
             self.assertLess(off, 1e-7, scale)
+
+    def test_samples_that_must_be_hit_may_be_what_determines_a_control_point(self):
+        middle = 9 / (COUNT - 1)  # a knot of the even ones, where a hat function is 1
+        kept = np.abs(self.t - middle) > 1.01 / (COUNT - 1)
+        only = int(np.argmin(np.abs(self.t - middle)))
+        kept[only] = True
+        held = [int(kept[:only].sum())]
+        self.t, data = self.t[kept], self.data[kept]
+        summary, miss, off = self.fit(data, "-p", 1, "--knots", "uniform", "--stop-relative-gradient", 1e-10, "--max-iterations", 300000, held=held)
+        self.assertEqual(summary["termination"], "converged")
+        self.assertLess(miss, EXACT)
+        self.assertLess(off, 1e-7)
 
 
 if __name__ == "__main__":

@@ -155,7 +155,7 @@ class Refusals(Command):
                                 ("method direct cannot start from stated control points; lspia, mlspia, clspia, ... can", "-n", 20, "-m", "direct", "--initial", "zero"),
                                 ("r.csv: it is the file of the points", "-n", 20, "-o", "r.csv")):
             self.bad(2, message, "fit", "r.csv", *words)
-        self.bad(2, "--unit: it is for .step, .stp, .igs, .iges", "convert", "k.json", "-o", "x.json", "--unit", "m")
+        self.good("convert", "k.json", "-o", "x.json", "--unit", "m")  # what the coordinates are may be said of any spline
         self.bad(2, "--chord-tolerance: it is for .stl, .vts, .vtu, .csv", "convert", "k.json", "-o", "-", "--chord-tolerance", 1)
         self.bad(3, "o.csv:1:1: '1e400' is not a number", "info", self.write("o.csv", "1e400,2\n-1,4\n"))
         self.bad(2, "p.txt: row 1: parameter 1.5 is outside the domain [0, 1] of axis 0", "evaluate", "k.json", "--parameters", self.write("p.txt", "0.5\n1.5\n"))

@@ -11,6 +11,7 @@
 #include <batten/shape/polygon.hpp>
 #include <batten/solve/cross_validation.hpp>
 #include <batten/solve/direct.hpp>
+#include <batten/solve/factorization.hpp>
 #include <batten/solve/keep_shape.hpp>
 
 #include <algorithm>
@@ -26,7 +27,17 @@ struct Equations {
     Constraints held; ///< relative to the system's centre
 };
 
-/// CLSPIA approximates the samples that are not held.
+bool determined(const NormalSystem& system) {
+    try {
+        factorize(system);
+    } catch (const SolverError&) {
+        return false;
+    }
+    return true;
+}
+
+/// CLSPIA approximates the samples that are not held [ChangMaDeng2023, section 2]; where these do
+/// not determine every control point all of them, which have the same constrained minimum.
 Equations assembled(const Problem& problem, std::string_view method) {
     Equations result{fixed_knots(problem), nullptr, Constraints(problem.samples.dim())};
     const HoldOptions& hold = problem.options.hold;
@@ -41,9 +52,9 @@ Equations assembled(const Problem& problem, std::string_view method) {
                                "use method direct");
         result.system =
             assemble(result.axes, rest.of(problem.samples), rest.of(problem.parameters));
-    } else {
-        result.system = assemble(result.axes, problem.samples, problem.parameters);
+        if (!determined(*result.system)) result.system.reset();
     }
+    if (!result.system) result.system = assemble(result.axes, problem.samples, problem.parameters);
     result.held = held.centred(result.system->centre());
     return result;
 }

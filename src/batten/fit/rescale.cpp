@@ -1,6 +1,8 @@
 #include <batten/fit/rescale.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace batten {
 
@@ -75,6 +77,7 @@ FitResult rescaled(FitResult result, double factor) {
           &report.first_gradient_norm, &report.constraint_error, &report.boundary_error,
           &report.tolerance, &report.noise_level, &report.data_size, &report.held_back})
         *length *= factor;
+    report.data_size = std::min(report.data_size, std::numeric_limits<double>::max());
     scale(result.deviations, factor);
     scale(report.settings, factor);
     for (Goal& goal : report.goals)

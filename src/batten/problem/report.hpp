@@ -76,7 +76,7 @@ struct FitReport {
     double freedom = 0;   ///< degrees of freedom that cross-validation left; else 0
     std::vector<Index>
         set_aside;        ///< samples found to be outliers: not fitted, not in the deviation
-    double data_size = 0; ///< diagonal of the samples' box
+    double data_size = 0; ///< diagonal of the samples' box, the greatest double at most
     std::vector<std::pair<std::string, double>> seconds; ///< per stage, in order
     std::vector<HistoryEntry> history;
     std::vector<Frame> frames; ///< with FitOptions::most_frames, evenly over the iterations

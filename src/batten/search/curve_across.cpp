@@ -8,6 +8,8 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 #include <span>
 
@@ -15,16 +17,23 @@ namespace batten {
 
 namespace {
 
-/// How the distance of a sample counts: w (I - part u u^T) for a unit vector u.
-struct Metric {
-    double weight;
-    std::span<const double> u;
-    double part;
-
-    double operator()(Index d, Index e) const {
-        return weight * ((d == e ? 1 : 0) -
-                         part * u[static_cast<std::size_t>(d)] * u[static_cast<std::size_t>(e)]);
+/// How the distance of a sample counts: w (I - part u u^T) for a unit vector u, row by row.
+class Metric {
+  public:
+    Metric(double weight, std::span<const double> u, double part) : dim_(u.size()) {
+        assert(dim_ <= static_cast<std::size_t>(most_coordinates));
+        for (std::size_t d = 0; d < dim_; ++d)
+            for (std::size_t e = 0; e < dim_; ++e)
+                value_[d * dim_ + e] = weight * ((d == e ? 1 : 0) - part * u[d] * u[e]);
     }
+
+    std::span<const double> operator[](Index d) const {
+        return {value_.data() + static_cast<std::size_t>(d) * dim_, dim_};
+    }
+
+  private:
+    std::size_t dim_;
+    std::array<double, most_coordinates * most_coordinates> value_;
 };
 
 /// Normal equations whose unknowns are all coordinates, control point by control point.
@@ -38,23 +47,23 @@ class CoordinateSystem {
           right_(knots.free_count(), dim) {}
 
     /// Adds the square of `point` - C(t) in a metric.
-    void add(double t, std::span<const double> point, const Metric& metric) {
+    void add(double t, std::span<const double> point, double weight, const Metric& metric) {
         const ActiveFunctions b = active_functions(knots_, t, Numbering::free);
-        weight_ += metric.weight;
-        for (Index d = 0; d < dim_; ++d) {
-            double pull = 0;
-            for (Index e = 0; e < dim_; ++e)
-                pull += metric(d, e) * point[static_cast<std::size_t>(e)];
-            for (int i = 0; i <= b.degree; ++i) {
-                const double value = b.value[static_cast<std::size_t>(i)];
-                const Index row = b.index(i) * dim_ + d;
-                right_(b.index(i), d) += value * pull;
+        weight_ += weight;
+        for (int i = 0; i <= b.degree; ++i) {
+            const double value = b.value[static_cast<std::size_t>(i)];
+            const Index row = b.index(i);
+            for (Index d = 0; d < dim_; ++d) {
+                right_(row, d) += value * dot(metric[d], point);
+                double* entry = &matrix_.at(row * dim_ + d, 0) - d; // of this row, coordinate 0
                 for (Index e = d; e < dim_; ++e)
-                    matrix_.at(row, static_cast<int>(e - d)) += value * value * metric(d, e);
-                for (int j = i + 1; j <= b.degree; ++j)
+                    entry[e] += value * value * metric[d][static_cast<std::size_t>(e)];
+                for (int j = i + 1; j <= b.degree; ++j) {
+                    entry += dim_;
+                    const double product = value * b.value[static_cast<std::size_t>(j)];
                     for (Index e = 0; e < dim_; ++e)
-                        matrix_.at(row, static_cast<int>((j - i) * dim_ + e - d)) +=
-                            value * b.value[static_cast<std::size_t>(j)] * metric(d, e);
+                        entry[e] += product * metric[d][static_cast<std::size_t>(e)];
+                }
             }
         }
     }
@@ -151,12 +160,13 @@ PointSet solve_across(const CurveTask& task, const CurveTrial& trial, const Curv
             gap[d] = value - at.point[d];
             square += at.first[d] * at.first[d];
         }
-        Metric metric{trial.weights[static_cast<std::size_t>(i)], u, 0};
+        const double weight = trial.weights[static_cast<std::size_t>(i)];
+        double part = 0;
         if (square > 0 && !parameter_stays(task, i)) {
             for (std::size_t d = 0; d < dim; ++d) u[d] = at.first[d] / std::sqrt(square);
-            metric.part = 1 - part_along(at, gap, square);
+            part = 1 - part_along(at, gap, square);
         }
-        system.add(t, point, metric);
+        system.add(t, point, weight, Metric(weight, u, part));
     }
     if (task.roughness > 0) system.add_roughness(task.roughness, 2);
     return uncentred(system.solve(exact.independent(trial.knots.free_count())),

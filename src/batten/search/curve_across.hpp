@@ -5,6 +5,9 @@
 
 namespace batten {
 
+/// Coordinates of the samples that solve_across takes at most: its equations couple them.
+inline constexpr Index most_coordinates = 4;
+
 /// Whether a sample's parameter stays while those of the others follow the curve: the ends of an
 /// open curve and the samples that the task fixes.
 bool parameter_stays(const CurveTask& task, Index sample);

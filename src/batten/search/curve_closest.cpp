@@ -14,6 +14,16 @@ CurveTrial rescaled(CurveTrial trial, double looser) {
     return trial;
 }
 
+CurveTrial rescaled(CurveTrial trial, const std::vector<double>& before,
+                    const std::vector<double>& now) {
+    trial.worst = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        trial.ratio[i] *= before[i] / now[i];
+        trial.worst = std::max(trial.worst, trial.ratio[i]);
+    }
+    return trial;
+}
+
 BetweenSamples check_reached(const CurveTask& task, const CurveTrial& trial) {
     std::vector<double> reached = task.tolerance;
     for (double& t : reached) t *= std::max(1.0, trial.worst);

@@ -10,6 +10,10 @@ namespace batten {
 /// A trial for tolerances that were `looser` times those that it is now judged by.
 CurveTrial rescaled(CurveTrial trial, double looser);
 
+/// A trial for other tolerances, one per sample, than those that it is judged by from now on.
+CurveTrial rescaled(CurveTrial trial, const std::vector<double>& before,
+                    const std::vector<double>& now);
+
 /// What the trial does between samples, judged as if its tolerances were as loose as it is far from
 /// the samples.
 BetweenSamples check_reached(const CurveTask& task, const CurveTrial& trial);

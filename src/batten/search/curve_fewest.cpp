@@ -6,7 +6,6 @@
 #include <batten/search/curve_corners.hpp>
 #include <batten/search/curve_knots.hpp>
 #include <batten/search/curve_rising.hpp>
-#include <batten/search/curve_spread.hpp>
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/search.hpp>
 
@@ -19,44 +18,8 @@ namespace batten {
 
 namespace {
 
-Index controls(const CurveWithin& fit) {
-    return fit.trial.knots.free_count();
-}
-
 constexpr Index few_enough = 40; // control points for which a second search takes little time
-
-/// A met fit's rivals that rise from the fewest knots, and what can be squeezed out of the best.
-void rise_and_squeeze(const CurveTask& task, CurveWithin& best) {
-    for (int smoothing : {evenly, 12}) {
-        CurveWithin again = risen(task, controls(best) - 1, smoothing);
-        if (!again.met) continue;
-        again.closest = best.closest;
-        best = std::move(again);
-    }
-    if (controls(best) <= few_enough) squeeze(task, best);
-}
-
-/// Whether a met fit is too wild between the samples to be handed out.
-bool is_wild(const CurveTask& task, const CurveWithin& fit) {
-    return between(task, fit.trial) > wild_part;
-}
-
-/// What rises from the fewest knots, where refining missed the tolerance or is wild.
-void rise_instead(const CurveTask& task, Index most, CurveWithin& best) {
-    if (best.met && !is_wild(task, best)) return;
-    CurveTask rising = task;
-    for (double strays : {1.0, wild_part}) {
-        rising.between = strays;
-        for (int smoothing : {evenly, 12}) {
-            CurveWithin again = risen(rising, most, smoothing);
-            best.closest.see(task, again.closest);
-            if (!again.met) continue;
-            again.closest = best.closest;
-            best = std::move(again);
-            return;
-        }
-    }
-}
+constexpr Index squeezed_samples = 500; // at most: squeezing costs a hundred passes over them
 
 /// Refines without corners and with them: what took fewer control points, or came nearer.
 CurveWithin refined_with_corners(CurveTask& task, const ToleranceOptions& options, Index most) {
@@ -84,35 +47,59 @@ CurveWithin refined_with_corners(CurveTask& task, const ToleranceOptions& option
     return best;
 }
 
-/// The fewest control points from one search: refined or risen, thinned out, squeezed.
+/// The fewest control points from one search: refined and thinned out, or risen.
 CurveWithin refined_and_thinned(CurveTask& task, const ToleranceOptions& options, Index most) {
     const bool few = task.samples.size() <= few_samples;
     CurveWithin best = refined_with_corners(task, options, most);
     if (few) rise_instead(task, most, best);
     // what is wild is searched again before anything is taken out
-    if (!best.met || (task.roughness == 0 && is_wild(task, best))) return best;
+    if (!best.met || (task.roughness == 0 && is_wild(task, best.trial))) return best;
     thin_out(task, best);
-    if (few) rise_and_squeeze(task, best);
+    if (few) rise_below(task, best);
     return best;
 }
 
-/// Searches for tighter tolerances, too: a curve found there may lead to fewer control points.
-void look_beyond(CurveTask& task, const ToleranceOptions& options, Index most, CurveWithin& best) {
-    for (double part : {0.3, 0.1}) {
-        if (!best.met || controls(best) > few_enough || task.samples.size() > few_samples) return;
-        CurveTask tighter = task;
-        for (double& t : tighter.tolerance) t *= part;
-        CurveWithin again =
-            refined_and_thinned(tighter, options, std::min(most, controls(best) * 3 / 2 + 10));
-        if (!again.met) return;
-        again.trial = rescaled(again.trial, part);
-        if (between(task, again.trial) > std::max(1.0, between(task, best.trial))) continue;
-        squeeze(task, again);
-        if (controls(again) >= controls(best)) continue;
+/// Takes what a search for tighter tolerances finds, squeezed, where it has fewer control points.
+/// Returns how many it has; 0 where those were not met.
+Index squeeze_tighter(CurveTask& task, std::vector<double> tolerance,
+                      const ToleranceOptions& options, Index most, CurveWithin& best) {
+    CurveTask tighter = task;
+    tighter.tolerance = std::move(tolerance);
+    CurveWithin again =
+        refined_and_thinned(tighter, options, std::min(most, controls(best) * 3 / 2 + 10));
+    if (!again.met) return 0;
+    again.trial = rescaled(again.trial, tighter.tolerance, task.tolerance);
+    const bool tame = between(task, again.trial) <= std::max(1.0, between(task, best.trial));
+    if (tame) squeeze(task, again);
+    const Index took = controls(again);
+    if (tame && took < controls(best)) {
         again.closest = best.closest;
         best = std::move(again);
         task.corners = std::move(tighter.corners);
         task.fixed = std::move(tighter.fixed);
+    }
+    return took;
+}
+
+/// Squeezes a met fit and those for tighter tolerances, as long as these take hardly more control
+/// points: first for the smallest everywhere.
+void squeeze_further(CurveTask& task, const ToleranceOptions& options, Index most,
+                     CurveWithin& best) {
+    const auto worthwhile = [&] {
+        return best.met && controls(best) <= few_enough && task.samples.size() <= squeezed_samples;
+    };
+    if (!worthwhile()) return;
+    squeeze(task, best);
+    const double smallest = tightest(task);
+    if (std::ranges::any_of(task.tolerance, [&](double t) { return t > smallest; }))
+        squeeze_tighter(task, std::vector<double>(task.tolerance.size(), smallest), options, most,
+                        best);
+    constexpr double least = 0.005; // part of the tolerance
+    for (double part = 0.3; part > least && worthwhile(); part *= 0.3) {
+        std::vector<double> tolerance = task.tolerance;
+        for (double& t : tolerance) t *= part;
+        const Index took = squeeze_tighter(task, std::move(tolerance), options, most, best);
+        if (took == 0 || 5 * took > 6 * controls(best)) return;
     }
 }
 
@@ -144,14 +131,14 @@ double shown_roughness(const CurveTask& task) {
 /// samples show of it costs a small part of the tolerance.
 void calm_down(CurveTask& task, const ToleranceOptions& options, Index most, CurveWithin& found) {
     if (!found.trial.control.empty() && found.met && between(task, found.trial) <= 1) return;
-    const bool unthinned = found.met && is_wild(task, found);
+    const bool unthinned = found.met && is_wild(task, found.trial);
     const double tolerance = tightest(task);
     const double shown = std::max(shown_roughness(task), tolerance * tolerance);
     const bool noisy =
         noise_bound(task.samples.points) >= 0.3 * tolerance && task.samples.size() <= few_samples;
     bool calmed = false;
     for (double part : {0.1, 1.0}) {
-        if (!noisy || (calmed && !is_wild(task, found))) break;
+        if (!noisy || (calmed && !is_wild(task, found.trial))) break;
         CurveTask calmer = task;
         calmer.roughness = part * tolerance * tolerance / shown;
         CurveWithin again = refined_and_thinned(calmer, options, most);
@@ -190,8 +177,11 @@ void take_out_inflections(const CurveTask& task, const ToleranceOptions& options
     CurveWithin again = refined_further(shaped, found, most);
     if (again.met) thin_out(shaped, again);
     consider(std::move(again));
-    if (before <= few_enough) // from nothing: other knots may do
-        consider(refined_and_thinned(shaped, options, most));
+    if (before <= few_enough) { // from nothing: other knots may do
+        again = refined_and_thinned(shaped, options, most);
+        if (again.met && task.samples.size() <= squeezed_samples) squeeze(shaped, again);
+        consider(std::move(again));
+    }
     if (fewest) found = std::move(*fewest);
 }
 
@@ -199,13 +189,13 @@ void take_out_inflections(const CurveTask& task, const ToleranceOptions& options
 
 CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index most) {
     CurveWithin found = refined_and_thinned(task, options, most);
-    look_beyond(task, options, most, found);
+    squeeze_further(task, options, most, found);
     calm_down(task, options, most, found);
     const ClosestSeen closest = found.closest;
     take_out_inflections(task, options, most, found);
     found.closest = closest;
     found.closest.see(task, found.trial);
-    found.met = found.met && !is_wild(task, found);
+    found.met = found.met && !is_wild(task, found.trial);
     return found;
 }
 
@@ -274,12 +264,7 @@ CurveWithin smooth_curve(const CurveTask& task, double noise, Index most) {
     CurveWithin smooth = refined(looser, most);
     if (smooth.met && task.samples.size() <= few_samples)
         thin_out(looser, smooth); // a thousand more samples per knot: nothing to gain
-    CurveTrial& trial = smooth.trial;
-    trial.worst = 0;
-    for (std::size_t i = 0; i < trial.ratio.size(); ++i) {
-        trial.ratio[i] *= looser.tolerance[i] / task.tolerance[i];
-        trial.worst = std::max(trial.worst, trial.ratio[i]);
-    }
+    smooth.trial = rescaled(smooth.trial, looser.tolerance, task.tolerance);
     return smooth;
 }
 

@@ -2,6 +2,7 @@
 
 #include <batten/basis/place_knots.hpp>
 #include <batten/measure/between_samples.hpp>
+#include <batten/search/search.hpp>
 #include <batten/system/collocation.hpp>
 
 #include <algorithm>
@@ -82,6 +83,10 @@ KnotVector first_knots(const CurveTask& task) {
 double between(const CurveTask& task, const CurveTrial& trial) {
     return check_between(spline_of(trial), task.samples.points, trial.parameters, task.tolerance)
         .excess;
+}
+
+bool is_wild(const CurveTask& task, const CurveTrial& trial) {
+    return between(task, trial) > wild_part;
 }
 
 } // namespace batten

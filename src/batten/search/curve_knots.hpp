@@ -40,4 +40,7 @@ KnotVector first_knots(const CurveTask& task);
 /// Part of what is allowed between samples that the trial uses, at most 1 being good.
 double between(const CurveTask& task, const CurveTrial& trial);
 
+/// Whether it uses too much of it to be handed out (wild_part).
+bool is_wild(const CurveTask& task, const CurveTrial& trial);
+
 } // namespace batten

@@ -16,6 +16,11 @@ struct CurveWithin {
     std::vector<std::pair<std::string, Index>> stages;
 };
 
+/// Free control points of a fit.
+inline Index controls(const CurveWithin& fit) {
+    return fit.trial.knots.free_count();
+}
+
 /// First half of the search for few knots: refines where the error is until every sample is within
 /// tolerance and the curve does nothing odd between them. `most_control_points`: not more than
 /// that. Bounded in rounds.

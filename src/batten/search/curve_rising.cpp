@@ -2,6 +2,7 @@
 
 #include <batten/search/curve_knots.hpp>
 #include <batten/search/curve_spread.hpp>
+#include <batten/search/search.hpp>
 #include <batten/system/collocation.hpp>
 
 #include <algorithm>
@@ -24,7 +25,7 @@ bool settle_on(const CurveTask& task, CurveTrial& trial, std::size_t count, int 
     }
     trial.weights = first_weights(task);
     if (undetermined(trial.knots, trial.parameters)) return false;
-    settle(task, trial, rounds, shift, Patience::to_the_end);
+    settle(task, trial, rounds, shift, Effort::thorough);
     return std::isfinite(trial.worst);
 }
 
@@ -32,8 +33,11 @@ bool is_good(const CurveTask& task, const CurveTrial& trial) {
     return trial.worst <= 1 && between(task, trial) <= task.between;
 }
 
-} // namespace
-
+/// Another way to few knots than refining and thinning out: from the fewest upwards, at most `most`
+/// control points, spread anew each time (`smoothing` as in search/curve_spread.hpp), the samples'
+/// parameters following the curve from one count to the next. `met` when every sample is within
+/// tolerance and the curve strays no further between them than CurveTask::between allows. Bounded
+/// in trials.
 CurveWithin risen(const CurveTask& task, Index most, int smoothing) {
     constexpr int most_idle = 4; // counts in a row that hardly bring the curve nearer
     CurveWithin result;
@@ -75,22 +79,46 @@ CurveWithin risen(const CurveTask& task, Index most, int smoothing) {
     return result;
 }
 
+} // namespace
+
+void rise_below(const CurveTask& task, CurveWithin& best) {
+    for (int smoothing : {evenly, 12}) {
+        CurveWithin again = risen(task, controls(best) - 1, smoothing);
+        if (!again.met) continue;
+        again.closest = best.closest;
+        best = std::move(again);
+    }
+}
+
+void rise_instead(const CurveTask& task, Index most, CurveWithin& best) {
+    if (best.met && !is_wild(task, best.trial)) return;
+    CurveTask rising = task;
+    for (double strays : {1.0, wild_part}) {
+        rising.between = strays;
+        for (int smoothing : {evenly, 12}) {
+            CurveWithin again = risen(rising, most, smoothing);
+            best.closest.see(task, again.closest);
+            if (!again.met) continue;
+            again.closest = best.closest;
+            best = std::move(again);
+            return;
+        }
+    }
+}
+
 void squeeze(const CurveTask& task, CurveWithin& fit) {
     constexpr int rounds = 2 * trial_rounds;
     CurveTrial& trial = fit.trial;
     const auto spread_on_one_less = [&] {
         const std::size_t count = free_knots(task, trial);
-        for (int smoothing : {evenly, 12, 3, 1}) {
-            for (const std::vector<double>& parameters : {trial.parameters, task.parameters}) {
-                if (count == 0) return false;
-                CurveTrial attempt = trial;
-                attempt.parameters = parameters;
-                if (!settle_on(task, attempt, count - 1, smoothing, rounds, KnotShift::allowed) ||
-                    !is_good(task, attempt))
-                    continue;
-                trial = std::move(attempt);
-                return true;
-            }
+        for (int smoothing : {evenly, 12, 1}) {
+            if (count == 0) return false;
+            CurveTrial attempt = trial;
+            if (!settle_on(task, attempt, count - 1, smoothing, rounds, KnotShift::allowed) ||
+                !is_good(task, attempt))
+                continue;
+            trial = std::move(attempt);
+            return true;
         }
         return false;
     };

@@ -4,12 +4,13 @@
 
 namespace batten {
 
-/// Another way to few knots than refining and thinning out: from the fewest upwards, at most `most`
-/// control points, spread anew each time (`smoothing` as in search/curve_spread.hpp), the samples'
-/// parameters following the curve from one count to the next. `met` when every sample is within
-/// tolerance and the curve strays no further between them than CurveTask::between allows. Bounded
-/// in trials.
-CurveWithin risen(const CurveTask& task, Index most, int smoothing);
+/// Rivals of a met fit, which rise from the fewest knots upwards: the fit with the fewest control
+/// points. Bounded in trials.
+void rise_below(const CurveTask& task, CurveWithin& best);
+
+/// Where the fit missed the tolerance or is wild, one that rises from the fewest knots to at most
+/// `most` control points, if there is one. Bounded in trials.
+void rise_instead(const CurveTask& task, Index most, CurveWithin& best);
 
 /// Takes out knots as long as the rest, spread anew or shifted, still meets the tolerance and does
 /// nothing odd. Bounded in trials.

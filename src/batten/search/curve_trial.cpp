@@ -23,16 +23,16 @@ constexpr Index few_exact = 40; // constraints: their dense equations cost littl
 
 /// Control points on the trial's knots: of the samples' distances at their parameters, or across
 /// the curve of the round before where there is one and nothing but positions must hold.
-PointSet solve(const CurveTask& task, const CurveTrial& trial,
-               const std::optional<CurvePieces>& last) {
+PointSet solve(const CurveTask& task, const CurveTrial& trial, const CurvePieces* last) {
     const auto origin = task.samples.points[0];
     const std::vector<double> centre(origin.begin(), origin.end());
     Constraints exact(task.samples.dim());
     if (task.hold.equalities())
         exact = held_constraints({trial.knots}, task.samples, {{trial.parameters}, {}}, task.hold)
                     .centred(centre);
-    const bool across = last && task.samples.dim() > 1 && task.most_inflections < 0 &&
-                        exact.directions().empty() && exact.size() <= few_exact;
+    const bool across = last && task.samples.dim() > 1 && task.samples.dim() <= most_coordinates &&
+                        task.most_inflections < 0 && exact.directions().empty() &&
+                        exact.size() <= few_exact;
     if (across) return solve_across(task, trial, *last, exact);
     BandedSystem system(trial.knots, centre);
     system.add(trial.parameters, task.samples.points, trial.weights);
@@ -146,15 +146,17 @@ void shift_knots(const CurveTask& task, CurveTrial& trial) {
 
 } // namespace
 
-bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift,
-            Patience patience) {
+bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift, Effort effort) {
+    constexpr int most_idle = 8; // rounds in a row that do not bring it nearer
+    const bool thorough = effort == Effort::thorough;
     std::optional<CurvePieces> last;
+    int best_round = 0;
     CurveTrial best;
     best.worst = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds; ++round) {
         if (task.cancelled && task.cancelled()) throw Cancelled("the fit was cancelled");
         try {
-            trial.control = solve(task, trial, last);
+            trial.control = solve(task, trial, thorough && last ? &*last : nullptr);
         } catch (const SolverError&) { // samples crowd at one side of a span
             trial.worst = std::numeric_limits<double>::infinity();
             break;                                     // the round before stands
@@ -167,10 +169,13 @@ bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shif
         last.emplace(trial.knots, trial.control);
         correct_parameters(task, *last, trial);
         measure(task, *last, trial);
-        if (trial.worst < best.worst) best = trial;
+        if (trial.worst < best.worst) {
+            best = trial;
+            best_round = round;
+        }
         if (trial.worst <= 1 || !std::isfinite(trial.worst)) break;
         const bool hopeless = (round >= 3 && best.worst > 4) || (round >= 7 && best.worst > 1.5);
-        if (hopeless && patience == Patience::while_in_reach) break;
+        if (thorough ? round - best_round > most_idle : hopeless) break;
         if (round >= 2) reweigh(trial);
         if (shift == KnotShift::allowed && round % 2 == 1) shift_knots(task, trial);
     }

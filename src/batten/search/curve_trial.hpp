@@ -62,17 +62,18 @@ struct CurveTrial {
 /// Whether `settle` may shift knots towards where the error is.
 enum class KnotShift { none, allowed };
 
-/// Whether `settle` goes on where the weights alone will hardly bring the samples within tolerance.
-enum class Patience { while_in_reach, to_the_end };
+/// How `settle` goes about it: by the samples' distances at their parameters, given up where the
+/// weights will hardly bring them within tolerance; or by those across the curve
+/// (search/curve_across.hpp) as long as it comes nearer.
+enum class Effort { quick, thorough };
 
-/// Least-squares fit on the trial's knots, from the second round on of the distances across the
-/// curve (search/curve_across.hpp), with parameters corrected by one closest-point step a round (in
-/// order, never past a neighbour's half-way) and weights moved towards the samples that are
-/// furthest out (Lawson's iteration), for at most `rounds` rounds or until every sample is within
-/// tolerance. Leaves the best round's state. Returns whether the tolerance is met. Throws
+/// Least-squares fit on the trial's knots, with parameters corrected by one closest-point step a
+/// round (in order, never past a neighbour's half-way) and weights moved towards the samples that
+/// are furthest out (Lawson's iteration), for at most `rounds` rounds or until every sample is
+/// within tolerance. Leaves the best round's state. Returns whether the tolerance is met. Throws
 /// SolverError when the samples do not determine the control points.
 bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift,
-            Patience patience = Patience::while_in_reach);
+            Effort effort = Effort::quick);
 
 /// Whether the control polygon bends no more often than it may.
 bool shape_kept(const CurveTask& task, const CurveTrial& trial);
