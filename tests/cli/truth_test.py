@@ -120,6 +120,18 @@ class Truth(InFolder):
         self.assertNotIn("noise_level", summary)
         self.assertIn("noise level is unknown", summary["verdict"])
 
+    def test_exact_samples_have_no_noise_however_few_or_repeated(self):
+        for count, turns in ((18, 15), (20, 20), (22, 20), (24, 20)):
+            t = np.linspace(0, 1, count)
+            for tolerance in (2e-3, 2e-4):
+                spline, summary, status = self.fit(np.column_stack([t, np.sin(turns * t)]), "--tolerance", tolerance)
+                self.assertNotIn("noise_level", summary, (count, turns, tolerance))
+        t = np.linspace(0, 1, 1000)
+        once = np.column_stack([t, np.cos(6 * t)])
+        spline, summary, status = self.fit(np.repeat(once, 2, axis=0), "--tolerance", 2.236e-4)
+        self.assertEqual(status, 0, summary["verdict"])
+        self.assertNotIn("noise_level", summary)
+
     def test_units_and_direction_do_not_count(self):
         rng = np.random.default_rng(7)
         t = np.sort(np.concatenate([[0, 1], rng.random(118)]))

@@ -1,6 +1,7 @@
 #include <batten/search/residual_noise.hpp>
 
 #include <batten/basis/place_knots.hpp>
+#include <batten/core/vectors.hpp>
 #include <batten/parametrize/noise_aware.hpp>
 #include <batten/samples/samples.hpp>
 #include <batten/solve/direct.hpp>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace batten {
 
@@ -32,34 +34,41 @@ PointSet residuals(const Points& q, const std::vector<double>& t, Index spans) {
 }
 
 /// Whether residuals turn to the other side from one sample to the next as often as independent
-/// ones, to two standard deviations.
+/// ones, to two standard deviations, and are no more alike than these, to one and a half: few
+/// samples of a smooth curve turn often enough by themselves.
 bool independent(const PointSet& r) {
     double turns = 0;
+    double alike = 0;
+    double square = 0;
     for (Index i = 0; i + 1 < r.size(); ++i) {
-        double product = 0;
-        for (Index d = 0; d < r.dim(); ++d) product += r(i, d) * r(i + 1, d);
+        const double product = dot(r[i], r[i + 1]);
         if (product < 0) ++turns;
+        alike += product;
+        square += dot(r[i], r[i]);
     }
     const auto steps = static_cast<double>(r.size() - 1);
-    return turns >= steps / 2 - std::sqrt(steps);
+    return turns >= steps / 2 - std::sqrt(steps) && alike <= 1.5 * square / std::sqrt(steps);
 }
 
-/// Of very many samples evenly some, which tell the noise to half a percent.
+/// Of very many samples evenly some, which tell the noise to half a percent; each place once, as
+/// repeated samples tell nothing.
 PointSet enough(const Points& q) {
     constexpr Index most = 1 << 16;
     const Index stride = (q.size() + most - 1) / most;
-    PointSet some(q.size() / stride, q.dim());
-    for (Index i = 0; i < some.size(); ++i) std::ranges::copy(q[i * stride], some[i].begin());
-    return some;
+    std::vector<double> some;
+    for (Index i = 0; i < q.size(); i += stride)
+        if (i == 0 || !std::ranges::equal(q[i], q[i - stride]))
+            some.insert(some.end(), q[i].begin(), q[i].end());
+    return {std::move(some), q.dim()};
 }
 
 } // namespace
 
 double residual_noise(const Points& all) {
-    if (all.size() < samples_per_span) return 0;
     const PointSet some = enough(all);
     const Points q(some);
     const Index m = q.size();
+    if (m < samples_per_span) return 0;
     if (!(diagonal(q) > 0)) return 0;
     const std::vector<double> t = noise_aware_parameters(q, Closure::open);
     for (Index spans = 1; spans * samples_per_span <= m; spans *= 2) {
