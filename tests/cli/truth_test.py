@@ -132,6 +132,20 @@ class Truth(InFolder):
         self.assertEqual(status, 0, summary["verdict"])
         self.assertNotIn("noise_level", summary)
 
+    def test_a_kept_convexity_is_one_of_the_curve(self):
+        t = np.linspace(0, 1, 80)
+        corner = np.column_stack([t, np.abs(t - 0.5)])
+        for degree in range(2, 7):
+            for tolerance in (1e-2, 1e-3):
+                spline, summary, status = self.fit(corner, "--tolerance", tolerance, "-p", degree, "--preserve", "convexity")
+                self.assertIn(status, (0, 4))
+                curve = BSpline(np.array(spline["knots"][0]), np.array(spline["control_points"]), degree)
+                breaks = np.unique(spline["knots"][0])
+                at = np.concatenate([np.linspace(a, b, 200)[1:-1] for a, b in zip(breaks, breaks[1:])])
+                (x, y), (u, v) = curve(at, 1).T, curve(at, 2).T
+                bend = (x * v - y * u) / (x * x + y * y) ** 1.5  # curvature; the chart is of size one
+                self.assertFalse(bend.min() < -1e-3 and bend.max() > 1e-3, (degree, tolerance, bend.min(), bend.max()))
+
     def test_units_and_direction_do_not_count(self):
         rng = np.random.default_rng(7)
         t = np.sort(np.concatenate([[0, 1], rng.random(118)]))

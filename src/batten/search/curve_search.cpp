@@ -8,10 +8,12 @@
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/residual_noise.hpp>
 #include <batten/search/search.hpp>
+#include <batten/shape/polygon.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -70,6 +72,9 @@ CurveTask task_of(const Problem& problem) {
                    .unit = problem.options.unit,
                    .cancelled = problem.options.cancelled};
     task.seam_continuity = seam < 0 ? task.degree - 1 : seam;
+    if (samples.dim() == 2) // between two samples the curve may turn further than these show
+        task.most_turning =
+            total_turning(PointSet(samples.points), task.closure) + std::numbers::pi;
     const bool closed = task.closure == Closure::closed;
     const int least = closed ? 2 * task.degree + 2 : task.degree + 1;
     if (samples.size() < least)
@@ -136,6 +141,7 @@ CurveTask turned_task(const CurveTask& task, const Turned& turned, const Samples
                      .closure = task.closure,
                      .hold = turned(task.hold),
                      .most_inflections = task.most_inflections,
+                     .most_turning = task.most_turning,
                      .seam_continuity = task.seam_continuity,
                      .unit = task.unit,
                      .cancelled = task.cancelled};

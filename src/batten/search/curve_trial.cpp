@@ -188,7 +188,8 @@ bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shif
 
 bool shape_kept(const CurveTask& task, const CurveTrial& trial) {
     return task.most_inflections < 0 ||
-           inflection_count(trial.control, task.closure) <= task.most_inflections;
+           (inflection_count(trial.control, task.closure) <= task.most_inflections &&
+            total_turning(trial.control, task.closure) <= task.most_turning);
 }
 
 Spline spline_of(const CurveTrial& trial) {

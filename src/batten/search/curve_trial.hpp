@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct CurveTask {
     HoldOptions hold{};
     /// Inflections that the control polygon may have; negative: any number.
     Index most_inflections = -1;
+    /// What it may turn in all where these are limited, in radians: one that folds back on itself
+    /// has none.
+    double most_turning = std::numeric_limits<double>::infinity();
     /// Factor of the roughness (NormalSystem::add_roughness, order 2) that keeps in rein what no
     /// sample holds; 0: none.
     double roughness = 0;
@@ -75,7 +79,7 @@ enum class Effort { quick, thorough };
 bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift,
             Effort effort = Effort::quick);
 
-/// Whether the control polygon bends no more often than it may.
+/// Whether the control polygon bends no more often, and turns no further, than it may.
 bool shape_kept(const CurveTask& task, const CurveTrial& trial);
 
 /// The trial as a spline.

@@ -1,5 +1,7 @@
 #include <batten/shape/polygon.hpp>
 
+#include <batten/core/vectors.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -59,6 +61,19 @@ Index inflection_count(const PointSet& polygon, Closure closure, double rounding
     for (std::size_t i = 1; i < signs.size(); ++i) count += signs[i] != signs[i - 1] ? 1 : 0;
     if (closure == Closure::closed && signs.size() > 1 && signs.back() != signs.front()) ++count;
     return count;
+}
+
+double total_turning(const PointSet& polygon, Closure closure) {
+    const std::vector<Index> kept = distinct(polygon, closure);
+    const std::size_t n = kept.size();
+    double sum = 0;
+    for (std::size_t i = 0; n >= 3 && i < (closure == Closure::closed ? n : n - 2); ++i) {
+        const auto a = polygon[kept[i]];
+        const auto b = polygon[kept[(i + 1) % n]];
+        const auto c = polygon[kept[(i + 2) % n]];
+        sum += std::abs(std::atan2(turn(a, b, c), dot(difference(b, a), difference(c, b))));
+    }
+    return sum;
 }
 
 bool keeps_shape(const PointSet& polygon, const PointSet& moved, Closure closure, double roundings,

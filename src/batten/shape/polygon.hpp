@@ -31,6 +31,10 @@ std::vector<int> turn_signs(const PointSet& polygon, Closure closure = Closure::
 Index inflection_count(const PointSet& polygon, Closure closure = Closure::open,
                        double roundings = certain_roundings);
 
+/// Sum of the sizes of a planar polygon's turns, in radians: what a curve with this control polygon
+/// turns at most.
+double total_turning(const PointSet& polygon, Closure closure = Closure::open);
+
 /// Whether a polygon whose points have moved still has its shape: turns of more than so many
 /// roundings have their signs, what was straight is so or bends by more than `bend` roundings, and
 /// there are no more inflections than before.
