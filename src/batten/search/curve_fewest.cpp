@@ -166,7 +166,7 @@ void take_out_inflections(const CurveTask& task, const ToleranceOptions& options
     if (near_interpolation(found.trial.knots.free_count(), task.samples.size()))
         return; // it bends with the samples' noise
     CurveTask shaped = task;
-    shaped.most_inflections = shown;
+    limit_inflections(shaped, shown);
     const double strays = std::max(1.0, between(task, found.trial));
     const Index before = controls(found);
     std::optional<CurveWithin> fewest;

@@ -51,7 +51,7 @@ CurveWithin risen(const CurveTask& task, Index most, int smoothing) {
     std::size_t missed = free_knots(task, trial);
     std::size_t met = missed;
     double nearest = std::numeric_limits<double>::infinity();
-    for (int idle = 0; !result.met;) {
+    for (int idle = 0;;) {
         CurveTrial attempt = trial;
         if (!settle_on(task, attempt, met, smoothing, trial_rounds, KnotShift::none) ||
             attempt.knots.free_count() > most)
@@ -60,9 +60,9 @@ CurveWithin risen(const CurveTask& task, Index most, int smoothing) {
         idle = attempt.worst < 0.9 * nearest ? 0 : idle + 1;
         nearest = std::min(nearest, attempt.worst);
         result.met = is_good(task, attempt);
-        if (idle > most_idle && !result.met) return result;
         (result.met ? good : trial) = std::move(attempt);
         if (result.met) break;
+        if (idle > most_idle) return result;
         missed = met;
         met += 1 + met / 8;
     }

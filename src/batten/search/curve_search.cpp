@@ -8,12 +8,10 @@
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/residual_noise.hpp>
 #include <batten/search/search.hpp>
-#include <batten/shape/polygon.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -72,9 +70,6 @@ CurveTask task_of(const Problem& problem) {
                    .unit = problem.options.unit,
                    .cancelled = problem.options.cancelled};
     task.seam_continuity = seam < 0 ? task.degree - 1 : seam;
-    if (samples.dim() == 2) // between two samples the curve may turn further than these show
-        task.most_turning =
-            total_turning(PointSet(samples.points), task.closure) + std::numbers::pi;
     const bool closed = task.closure == Closure::closed;
     const int least = closed ? 2 * task.degree + 2 : task.degree + 1;
     if (samples.size() < least)
@@ -207,7 +202,7 @@ Fitted curve_within(const Problem& given) {
     const Samples& samples = problem.samples;
     CurveTask task = task_of(problem);
     const double smallest = tightest(task);
-    task.most_inflections = allowed_inflections(task, smallest);
+    limit_inflections(task, allowed_inflections(task, smallest));
     if (options.tolerance.corners == Corners::given)
         task.corners = checked_corners(options.tolerance.corner_samples, task);
     const Index limit = options.tolerance.max_control_points;

@@ -3,6 +3,7 @@
 #include <batten/search/curve_knots.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace batten {
@@ -23,13 +24,11 @@ std::vector<double> spread(const CurveTask& task, const CurveTrial& trial, std::
     for (std::size_t b = 0; b + 1 < breaks.size(); ++b)
         top.push_back(spline(std::array{(breaks[b] + breaks[b + 1]) / 2}, order));
     std::vector<double> jump(breaks.size(), 0);
-    for (std::size_t b = 1; b + 1 < breaks.size(); ++b)
+    for (std::size_t b = 1; b + 1 < breaks.size(); ++b) {
         jump[b] = distance(top[b - 1], top[b]) / (breaks[b + 1] - breaks[b - 1]);
-    for (std::size_t b = 1; b + 1 < breaks.size();
-         ++b) { // bends count in parts of the tolerance there
         const auto at =
             std::ranges::lower_bound(trial.parameters, breaks[b]) - trial.parameters.begin();
-        jump[b] /=
+        jump[b] /= // bends count in parts of the tolerance there
             task.tolerance[static_cast<std::size_t>(std::min<Index>(at, task.samples.size() - 1))];
     }
     jump.front() = jump[std::min<std::size_t>(1, breaks.size() - 1)];

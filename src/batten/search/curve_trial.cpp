@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 namespace batten {
@@ -184,6 +185,13 @@ bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shif
     else
         trial.worst = best.worst;
     return trial.worst <= 1;
+}
+
+void limit_inflections(CurveTask& task, Index most) {
+    task.most_inflections = most;
+    if (most >= 0)
+        task.most_turning =
+            total_turning(PointSet(task.samples.points), task.closure) + std::numbers::pi;
 }
 
 bool shape_kept(const CurveTask& task, const CurveTrial& trial) {

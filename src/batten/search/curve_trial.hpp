@@ -79,6 +79,10 @@ enum class Effort { quick, thorough };
 bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift,
             Effort effort = Effort::quick);
 
+/// Limits a planar curve's inflections, and with them what it may turn in all: half a turn further
+/// than its samples. Negative: any number.
+void limit_inflections(CurveTask& task, Index most);
+
 /// Whether the control polygon bends no more often, and turns no further, than it may.
 bool shape_kept(const CurveTask& task, const CurveTrial& trial);
 

@@ -26,6 +26,18 @@ std::vector<Index> distinct(const PointSet& polygon, Closure closure) {
     return kept;
 }
 
+/// Calls `visit(a, b, c)` for the turns at b between distinct points that follow each other;
+/// closed: round the seam.
+template <class Visit>
+void for_each_turn(const PointSet& polygon, Closure closure, Visit visit) {
+    const std::vector<Index> kept = distinct(polygon, closure);
+    const std::size_t n = kept.size();
+    if (n < 3) return;
+    const std::size_t turns = closure == Closure::closed ? n : n - 2;
+    for (std::size_t i = 0; i < turns; ++i)
+        visit(polygon[kept[i]], polygon[kept[(i + 1) % n]], polygon[kept[(i + 2) % n]]);
+}
+
 } // namespace
 
 int turn_sign(std::span<const double> a, std::span<const double> b, std::span<const double> c,
@@ -43,14 +55,9 @@ int turn_sign(std::span<const double> a, std::span<const double> b, std::span<co
 }
 
 std::vector<int> turn_signs(const PointSet& polygon, Closure closure, double roundings) {
-    const std::vector<Index> kept = distinct(polygon, closure);
-    const std::size_t n = kept.size();
     std::vector<int> signs;
-    if (n < 3) return signs;
-    const std::size_t turns = closure == Closure::closed ? n : n - 2;
-    for (std::size_t i = 0; i < turns; ++i)
-        signs.push_back(turn_sign(polygon[kept[i % n]], polygon[kept[(i + 1) % n]],
-                                  polygon[kept[(i + 2) % n]], roundings));
+    for_each_turn(polygon, closure,
+                  [&](auto a, auto b, auto c) { signs.push_back(turn_sign(a, b, c, roundings)); });
     return signs;
 }
 
@@ -64,15 +71,10 @@ Index inflection_count(const PointSet& polygon, Closure closure, double rounding
 }
 
 double total_turning(const PointSet& polygon, Closure closure) {
-    const std::vector<Index> kept = distinct(polygon, closure);
-    const std::size_t n = kept.size();
     double sum = 0;
-    for (std::size_t i = 0; n >= 3 && i < (closure == Closure::closed ? n : n - 2); ++i) {
-        const auto a = polygon[kept[i]];
-        const auto b = polygon[kept[(i + 1) % n]];
-        const auto c = polygon[kept[(i + 2) % n]];
+    for_each_turn(polygon, closure, [&](auto a, auto b, auto c) {
         sum += std::abs(std::atan2(turn(a, b, c), dot(difference(b, a), difference(c, b))));
-    }
+    });
     return sum;
 }
 
