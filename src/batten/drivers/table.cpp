@@ -33,9 +33,8 @@ Driver iteration(std::string_view name) {
 
 std::vector<Driver> table() {
     const Requests boundary{boundaries};
-    const Requests constrained = space | least_squares_terms | held | course;
     // a solution depends on no start, is beyond every stop, and its course is one step
-    const Requests solved = constrained - Requests{start};
+    const Requests solved = space | least_squares_terms | held | course;
     const Requests interpolating = space | course | Requests{local};
     const Requests grown{size, history, stop, outliers};
     return {
@@ -43,7 +42,7 @@ std::vector<Driver> table() {
          fit_least_squares},
         iteration("lspia"),
         iteration("mlspia"),
-        {method_entry("clspia"), constrained | curves, constrained | boundary, constrained - rules,
+        {method_entry("clspia"), solved | curves, solved | boundary, solved - rules,
          fit_least_squares},
         {method_entry("pia"), interpolating | Requests{shape}, interpolating, std::nullopt,
          fit_pia},

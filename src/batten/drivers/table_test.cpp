@@ -355,6 +355,8 @@ bool must_change(Request request, const Driver& driver) {
     case Request::outliers:
     case Request::shape:
         return false;
+    case Request::start:
+        return driver.name != "direct";
     case Request::stop:
         return driver.name != "direct" && driver.name != "cg";
     case Request::size:
