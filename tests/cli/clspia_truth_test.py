@@ -61,16 +61,23 @@ class ClspiaTruth(InFolder):
             self.assertLess(off, 1e-7, scale)
 
     def test_samples_that_must_be_hit_may_be_what_determines_a_control_point(self):
-        middle = 9 / (COUNT - 1)  # a knot of the even ones, where a hat function is 1
-        kept = np.abs(self.t - middle) > 1.01 / (COUNT - 1)
+        """The others do not reach it, or only where its hat function is 1e-9."""
+        width = 1 / (COUNT - 1)
+        middle = 9 * width  # a knot of the even ones, where a hat function is 1
+        kept = np.abs(self.t - middle) > 1.01 * width
         only = int(np.argmin(np.abs(self.t - middle)))
         kept[only] = True
-        held = [int(kept[:only].sum())]
-        self.t, data = self.t[kept], self.data[kept]
-        summary, miss, off = self.fit(data, "-p", 1, "--knots", "uniform", "--stop-relative-gradient", 1e-10, "--max-iterations", 300000, held=held)
-        self.assertEqual(summary["termination"], "converged")
-        self.assertLess(miss, EXACT)
-        self.assertLess(off, 1e-7)
+        held = int(kept[:only].sum())
+        t, data = self.t[kept], self.data[kept]
+        for edge in ([], [middle - width * (1 - 1e-9)]):
+            with self.subTest(edge=edge):
+                self.t = np.insert(t, held, edge)
+                points = np.insert(data, held, np.tile(data[held - 1], (len(edge), 1)), axis=0)
+                summary, miss, off = self.fit(points, "-p", 1, "--knots", "uniform", "--stop-relative-gradient", 1e-10, "--max-iterations", 300000,
+                                              held=[held + len(edge)])
+                self.assertEqual(summary["termination"], "converged")
+                self.assertLess(miss, EXACT)
+                self.assertLess(off, 1e-7)
 
 
 if __name__ == "__main__":

@@ -116,7 +116,7 @@ class Truth(InFolder):
             self.assertTrue(status == 4 or count == 200, (count, status))
         walk = np.cumsum(rng.normal(size=(300, 2)), axis=0)  # no part of it is noise
         spline, summary, status = self.fit(walk, "--tolerance", 0.01)
-        self.assertEqual(status, 4)
+        self.judge(walk, 0.01, spline, summary, status)  # a curve through all of them is allowed where it is tame
         self.assertNotIn("noise_level", summary)
         self.assertIn("noise level is unknown", summary["verdict"])
 

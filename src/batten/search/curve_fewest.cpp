@@ -6,8 +6,10 @@
 #include <batten/search/curve_corners.hpp>
 #include <batten/search/curve_knots.hpp>
 #include <batten/search/curve_rising.hpp>
+#include <batten/search/curve_through.hpp>
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/search.hpp>
+#include <batten/system/collocation.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -170,16 +172,28 @@ void take_out_inflections(const CurveTask& task, const ToleranceOptions& options
     const double strays = std::max(1.0, between(task, found.trial));
     const Index before = controls(found);
     std::optional<CurveWithin> fewest;
+    const Index worth = before + before / 4 + 1; // control points: beyond it the bends may stay
     const auto consider = [&](CurveWithin again) {
-        if (!again.met || between(task, again.trial) > strays) return;
+        if (!again.met || controls(again) > worth || between(task, again.trial) > strays) return;
         if (!fewest || controls(again) < controls(*fewest)) fewest = std::move(again);
     };
     CurveWithin again = refined_further(shaped, found, most);
     if (again.met) thin_out(shaped, again);
     consider(std::move(again));
+    const bool quick = task.samples.size() <= squeezed_samples;
     if (before <= few_enough) { // from nothing: other knots may do
         again = refined_and_thinned(shaped, options, most);
-        if (again.met && task.samples.size() <= squeezed_samples) squeeze(shaped, again);
+        if (again.met && quick) squeeze(shaped, again);
+        consider(std::move(again));
+    }
+    for (double part : {0.5, 0.3, 0.1}) { // closer to the samples it may bend as they do by itself
+        if (!quick || before > few_enough || (fewest && controls(*fewest) <= before)) break;
+        CurveTask tighter = task;
+        for (double& t : tighter.tolerance) t *= part;
+        again = refined_and_thinned(tighter, options, fewest ? controls(*fewest) - 1 : worth + 5);
+        if (again.met) squeeze(tighter, again);
+        if (!again.met || curve_inflections(again.trial, height) > shown) continue;
+        again.trial = rescaled(again.trial, tighter.tolerance, task.tolerance);
         consider(std::move(again));
     }
     if (fewest) found = std::move(*fewest);
@@ -201,26 +215,34 @@ CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index
 
 namespace {
 
-/// Where every curve so far is too wild to be handed out: the closest on the same knots with as
-/// little roughness counted as makes it acceptable.
+/// The closest acceptable curve on these knots with a little roughness counted: as much as rids it
+/// of what is wild.
 void see_calmer(const CurveTask& task, const KnotVector& knots, ClosestSeen& closest) {
     constexpr double least = 1e-6;
     constexpr double most = 1e12;
+    constexpr double step = 4;
     constexpr int rounds = 8;
     const double tolerance = tightest(task);
     const double shown = std::max(shown_roughness(task), tolerance * tolerance);
-    for (double part = least; part < most && !closest.trial(); part *= 4) {
+    const auto seen = [&](double part) {
         CurveTask calmer = task;
         calmer.roughness = part * tolerance * tolerance / shown;
-        const auto m = static_cast<std::size_t>(task.samples.size());
         CurveTrial trial{.knots = knots,
                          .parameters = task.parameters,
                          .weights = first_weights(task),
                          .control = {},
-                         .ratio = std::vector<double>(m, 0),
+                         .ratio = std::vector<double>(task.parameters.size(), 0),
                          .conflict = {}};
         settle(calmer, trial, rounds, KnotShift::none);
-        closest.see(task, trial);
+        const bool good = acceptable(task, trial);
+        if (good) closest.see(task, trial);
+        return good;
+    };
+    double part = least;
+    while (part < most && !seen(part)) part *= step;
+    for (double wild = part / step, tries = 0; tries < 4 && part < most; ++tries) {
+        const double middle = std::sqrt(wild * part);
+        (seen(middle) ? part : wild) = middle;
     }
 }
 
@@ -230,25 +252,29 @@ CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options
                           const CurveWithin& found, double reached) {
     CurveWithin result = found;
     ClosestSeen& closest = result.closest;
-    CurveTrial loosest = found.trial; // acceptable at the least loose tolerance so far, if any
-    int missed = 0;                   // powers of two by which the tolerance is looser
-    int met = 0;
-    if (task.samples.size() <= few_samples)
-        std::frexp(
-            std::min({closest.worst(), reached, diagonal(task.samples.points) / tightest(task)}),
-            &met);
-    while (met > missed + 1) {
-        const int power = (met + missed) / 2;
-        const double factor = std::ldexp(1, power);
+    CurveTrial loosest = found.trial; // acceptable at the tightest tolerances so far, if any
+    // the same tolerances whatever was asked: powers of two of the samples' size
+    constexpr int most_idle = 2; // tolerances in a row that bring nothing closer
+    const double size = diagonal(task.samples.points);
+    const bool few = task.samples.size() <= few_samples;
+    double factor = size / tightest(task);
+    const double start = std::min({closest.worst(), reached, factor});
+    while (few && factor > start) factor /= 2;
+    for (int idle = 0; few && factor > 1 && idle < most_idle; factor /= 2) {
         CurveTask looser = task;
         for (double& t : looser.tolerance) t *= factor;
         const CurveWithin again = fewest_knots(looser, options, most);
+        const double before = closest.worst();
         closest.see(task, again.closest, factor);
         if (again.met) loosest = rescaled(again.trial, factor);
-        (again.met ? met : missed) = power;
+        idle = closest.worst() < before ? 0 : idle + 1;
     }
-    if (!closest.trial() && !acceptable(task, loosest) && !found.trial.control.empty())
-        see_calmer(task, found.trial.knots, closest);
+    if (task.samples.size() <= few_samples) {
+        if (!found.trial.control.empty()) see_calmer(task, found.trial.knots, closest);
+        const KnotVector through = knots_through(task);
+        const bool allowed = options.max_control_points == 0 || through.free_count() <= most;
+        if (allowed && !undetermined(through, task.parameters)) see_calmer(task, through, closest);
+    }
     result.trial = closest.trial().value_or(loosest);
     result.met = closest.worst() <= 1;
     result.stages.emplace_back("closest", result.trial.knots.free_count());

@@ -5,6 +5,7 @@
 #include <batten/search/curve_corners.hpp>
 #include <batten/search/curve_direction.hpp>
 #include <batten/search/curve_fewest.hpp>
+#include <batten/search/curve_through.hpp>
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/residual_noise.hpp>
 #include <batten/search/search.hpp>
@@ -152,6 +153,23 @@ CurveTask turned_task(const CurveTask& task, const Turned& turned, const Samples
     return result;
 }
 
+/// The closest curve that may be handed out in place of one that missed the tolerance: it may meet
+/// it, or else the one through every sample may. Closer than `reached` times the tolerances, or
+/// none.
+bool finds_closer(const CurveTask& task, const ToleranceOptions& options, Index most,
+                  double reached, CurveOutcome& outcome) {
+    CurveWithin& found = outcome.found;
+    found = closest_curve(task, options, most, found, reached);
+    if (!found.met && options.max_control_points == 0) {
+        CurveWithin through = curve_through(task);
+        if (through.met)
+            found = std::move(through);
+        else if (through.trial.worst <= 1 && outcome.why == NotMet::crowded)
+            outcome.why = NotMet::wild;
+    }
+    return !found.trial.control.empty() && found.trial.worst < reached;
+}
+
 /// The search in the direction that the samples themselves determine, then in the other where that
 /// does not meet the tolerance; if neither does, for the closest curve that may be handed out.
 CurveOutcome searched_either_way(CurveTask& task, const FitOptions& options, Index most) {
@@ -181,11 +199,10 @@ CurveOutcome searched_either_way(CurveTask& task, const FitOptions& options, Ind
     const bool answered = outcomes[best].found.met || outcomes[best].why == NotMet::noise;
     double reached = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < ways.size() && !answered; ++k) {
-        CurveWithin& found = outcomes[k].found;
-        found = closest_curve(*ways[k], options.tolerance, most, found, reached);
-        if (found.trial.control.empty() || !(found.trial.worst < reached)) continue;
-        reached = found.trial.worst;
+        if (!finds_closer(*ways[k], options.tolerance, most, reached, outcomes[k])) continue;
+        reached = outcomes[k].found.trial.worst;
         best = k;
+        if (outcomes[k].found.met) break;
     }
     CurveTrial& trial = outcomes[best].found.trial;
     if (ways[best] != &task && !trial.control.empty()) trial = turned(trial);

@@ -12,7 +12,8 @@ namespace batten {
 ///
 /// Not reaching the tolerance is no error: the report's termination is tolerance_not_met, the
 /// verdict says why, and the spline is the best smooth one found. More than nine tenths of the
-/// samples are never used as control points.
+/// samples are used as control points only by a curve through all of them, where no other is within
+/// the tolerance.
 Fitted fit_by_search(const Problem& problem, std::string_view method);
 
 /// The two of which it takes the one for the problem's kind.

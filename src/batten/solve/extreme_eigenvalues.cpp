@@ -162,7 +162,6 @@ namespace {
 /// none. The smallest eigenvalue is at most the smallest diagonal entry, which an iteration started
 /// in the range may be slow to show.
 std::string ill_determined_words(const NormalSystem& system) {
-    constexpr double hardly = 1e-6;
     const std::vector<double> diagonal = system.diagonal();
     const double largest = *std::max_element(diagonal.begin(), diagonal.end());
     Index none = 0;
@@ -170,7 +169,7 @@ std::string ill_determined_words(const NormalSystem& system) {
     double smallest = largest;
     for (double x : diagonal) {
         none += x == 0 ? 1 : 0;
-        few += x > 0 && x < hardly * largest ? 1 : 0;
+        few += x > 0 && x < hardly_reached * largest ? 1 : 0;
         if (x > 0) smallest = std::min(smallest, x);
     }
     if (none + few == 0) return {};
