@@ -133,11 +133,37 @@ class Truth(InFolder):
         spline, summary, status = self.fit(np.repeat(once, 2, axis=0), "--tolerance", 2.236e-4)
         self.assertEqual(status, 0, summary["verdict"])
         self.assertNotIn("noise_level", summary)
-        for power in (2, 3, 5):  # uneven distances along a curve are no noise either
-            u = np.sort(np.random.default_rng(power).random(5000) ** power)
-            spline, summary, status = self.fit(np.column_stack([u, u * np.sin(10 * u)]), "--tolerance", 1e-4)
-            self.assertEqual(status, 0, summary["verdict"])
-            self.assertLess(largest_distance(spline, np.column_stack([u, u * np.sin(10 * u)])[::50]), 1e-4)
+
+    def smooth(self, rng, dim, count, turns):
+        """Exact samples at random distances along a curve."""
+        u = np.sort(rng.random(count) ** rng.integers(1, 4))
+        return np.column_stack([u] + [np.sin((turns + 2 * k) * u + k) for k in range(dim - 1)])
+
+    def test_uneven_distances_are_no_noise(self):
+        for seed in range(24):
+            rng = np.random.default_rng(seed)
+            count = int(rng.choice([16, 20, 33, 60, 130, 500, 1500, 5000]))
+            points = self.smooth(rng, int(rng.integers(1, 5)), count, rng.uniform(1, 20))
+            tolerance = 10 ** rng.uniform(-5, -2)
+            with self.subTest(seed=seed, count=count):
+                spline, summary, status = self.fit(points, "--tolerance", tolerance)
+                self.assertLess(summary.get("noise_level", 0), tolerance / 3, summary["verdict"])
+                if count > 200:
+                    self.assertEqual(status, 0, summary["verdict"])
+                    self.assertLess(largest_distance(spline, points[::50]), tolerance * (1 + 1e-6))
+
+    def test_noise_on_uneven_samples_is_told_to_a_tenth(self):
+        for seed in range(8):
+            rng = np.random.default_rng(100 + seed)
+            dim = int(rng.integers(2, 5))
+            noise = 10 ** rng.uniform(-3, -2)
+            points = self.smooth(rng, dim, 2000, rng.uniform(2, 6))
+            points += noise / np.sqrt(dim) * rng.normal(size=points.shape)
+            with self.subTest(seed=seed, dim=dim, noise=noise):
+                spline, summary, status = self.fit(points, "--tolerance", noise / 4)
+                self.assertEqual(status, 4)
+                self.assertLess(abs(summary["noise_level"] / noise - 1), 0.1)
+                self.assertLess(spline["control_shape"][0], 40)
 
     def test_a_kept_convexity_is_one_of_the_curve(self):
         t = np.linspace(0, 1, 80)

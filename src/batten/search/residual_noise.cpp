@@ -19,42 +19,88 @@ namespace {
 constexpr int degree = 3;
 /// A curve with too little freedom crosses its samples at most degree + 1 times per span: with this
 /// many samples to a span that is told from the crossings of chance, every second sample.
-constexpr Index samples_per_span = 16;
+constexpr std::size_t samples_per_span = 16;
 constexpr double rounding = 1e-9; ///< part of the samples' size: less is no noise
 
-/// Without what lies along the curve: no residuals, for a line of numbers.
-PointSet across(const Spline& curve, const Points& at, const PointSet& residuals) {
-    if (residuals.dim() == 1) return {};
-    PointSet result = residuals;
-    const PointSet tangents = evaluate(curve, at, std::array{1});
-    for (Index i = 0; i < result.size(); ++i) {
-        const double square = dot(tangents[i], tangents[i]);
-        if (!(square > 0)) continue;
-        const double along = dot(result[i], tangents[i]) / square;
-        for (Index d = 0; d < result.dim(); ++d) result(i, d) -= along * tangents(i, d);
+/// Knots of spans of at least a length, with samples_per_span samples or more in each.
+KnotVector knots_apart(const std::vector<double>& t, double length) {
+    std::vector<double> interior;
+    double from = t.front();
+    std::size_t first = 0;
+    for (std::size_t i = 0; i + samples_per_span <= t.size(); ++i) {
+        const double at = i > 0 ? (t[i - 1] + t[i]) / 2 : from;
+        if (i - first < samples_per_span || at - from < length) continue;
+        interior.push_back(at);
+        from = at;
+        first = i;
     }
-    return result;
+    return knots_around(degree, interior, t.front(), t.back());
 }
 
-/// What the least-squares curve with so many spans leaves of each sample (m x dim). Along a curve
-/// uneven distances look like noise; of noise, whatever its direction, a good part is across it: in
-/// a smaller one all of its noise shows, as large in every direction.
-PointSet residuals(const Points& q, const std::vector<double>& t, Index spans) {
-    constexpr double good_part = 0.5;
-    const KnotVector knots = knots_from_parameters(t, degree, spans + degree);
+/// The least-squares curve on these knots for samples at parameters in any order.
+Spline least_squares(const KnotVector& knots, const Points& q, const std::vector<double>& t) {
+    std::vector<std::size_t> order(t.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return t[i]; });
+    std::vector<double> ascending;
+    PointSet points(q.size(), q.dim());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        ascending.push_back(t[order[i]]);
+        std::ranges::copy(q[static_cast<Index>(order[i])], points[static_cast<Index>(i)].begin());
+    }
     BandedSystem system(knots, {q[0].begin(), q[0].end()});
-    system.add(t, q, {});
-    const Spline curve =
-        Spline::from_free({knots}, uncentred(solve_direct(system), system.centre()));
-    const Points at(t.data(), q.size(), 1);
-    PointSet left = evaluate(curve, at);
+    system.add(ascending, points, {});
+    return Spline::from_free({knots}, uncentred(solve_direct(system), system.centre()));
+}
+
+PointSet residuals(const Spline& curve, const Points& q, const std::vector<double>& t) {
+    PointSet left = evaluate(curve, Points(t.data(), q.size(), 1));
     for (Index i = 0; i < q.size(); ++i)
         for (Index d = 0; d < q.dim(); ++d) left(i, d) = q(i, d) - left(i, d);
-    PointSet part = across(curve, at, left);
-    if (part.empty()) return left;
+    return left;
+}
+
+/// Takes from the residuals what lies along the curve, and moves the parameters by that.
+void follow(const Spline& curve, PointSet& left, std::vector<double>& t) {
+    const PointSet tangents = evaluate(curve, Points(t.data(), left.size(), 1), std::array{1});
+    const double begin = curve.axis(0).begin();
+    const double end = curve.axis(0).end();
+    for (Index i = 0; i < left.size(); ++i) {
+        const double square = dot(tangents[i], tangents[i]);
+        if (!(square > 0)) continue;
+        const double along = dot(left[i], tangents[i]) / square;
+        for (Index d = 0; d < left.dim(); ++d) left(i, d) -= along * tangents(i, d);
+        double& parameter = t[static_cast<std::size_t>(i)];
+        parameter = std::clamp(parameter + along, begin, end);
+    }
+}
+
+/// What the least-squares curve leaves of each sample (m x dim).
+struct Residuals {
+    PointSet whole;
+    /// Across the curve, whose samples' parameters follow it, times what makes it as large as the
+    /// whole of noise without a direction; no rows for a line of numbers.
+    PointSet across;
+    /// Whether most of the whole lies along the curve: uneven distances look like noise there.
+    bool uneven = false;
+};
+
+Residuals residuals(const KnotVector& knots, const Points& q, std::vector<double> t) {
+    constexpr int rounds = 3;
+    Spline curve = least_squares(knots, q, t);
+    Residuals result{residuals(curve, q, t), {}};
+    if (q.dim() == 1) return result;
+    result.across = result.whole;
+    follow(curve, result.across, t);
+    for (int round = 1; round < rounds; ++round) {
+        curve = least_squares(knots, q, t);
+        result.across = residuals(curve, q, t);
+        follow(curve, result.across, t);
+    }
     const auto dim = static_cast<double>(q.dim());
-    for (double& x : part.values()) x *= std::sqrt(dim / (dim - 1));
-    return frobenius_norm(part) < good_part * frobenius_norm(left) ? part : left;
+    for (double& x : result.across.values()) x *= std::sqrt(dim / (dim - 1));
+    result.uneven = 2 * frobenius_norm(result.across) < frobenius_norm(result.whole);
+    return result;
 }
 
 /// Whether residuals turn to the other side from one sample to the next as often as independent
@@ -76,7 +122,7 @@ bool independent(const PointSet& r) {
 
 /// Of very many samples evenly some, which tell the noise to half a percent; each place once, as
 /// repeated samples tell nothing.
-PointSet enough(const Points& q) {
+PointSet some_of(const Points& q) {
     constexpr Index most = 1 << 16;
     const Index stride = (q.size() + most - 1) / most;
     std::vector<double> some;
@@ -89,24 +135,39 @@ PointSet enough(const Points& q) {
 } // namespace
 
 double residual_noise(const Points& all) {
-    const PointSet some = enough(all);
+    const PointSet some = some_of(all);
     const Points q(some);
     const Index m = q.size();
-    if (m < samples_per_span) return 0;
+    if (m < 2 * static_cast<Index>(samples_per_span)) return 0;
     if (!(diagonal(q) > 0)) return 0;
-    const std::vector<double> t = noise_aware_parameters(q, Closure::open);
-    for (Index spans = 1; spans * samples_per_span <= m; spans *= 2) {
+    // along a line of numbers, which goes back and forth, there is no curve to follow
+    const std::vector<double> t = q.dim() == 1 ? parametrize_sequence(q, Parametrization::uniform)
+                                               : noise_aware_parameters(q, Closure::open);
+    const auto level = [&](const PointSet& left, Index controls) {
+        const double noise = frobenius_norm(left) / std::sqrt(static_cast<double>(m - controls));
+        return noise > rounding * diagonal(q) ? noise : 0;
+    };
+    // by what is across the curve, where the parameters spoil what is along it; few samples follow
+    // a curve that follows them
+    double other = 0;
+    const bool enough = m >= 8 * static_cast<Index>(samples_per_span);
+    Index before = 0;
+    const Index most = knots_apart(t, 0).free_count();
+    for (double parts = 1; before < most; parts *= 2) {
+        const bool last = 2 * parts * samples_per_span > static_cast<double>(m);
+        const KnotVector knots = knots_apart(t, last ? 0 : (t.back() - t.front()) / parts);
+        const Index controls = knots.free_count();
+        if (std::exchange(before, controls) == controls) continue;
         try {
-            const PointSet left = residuals(q, t, spans);
-            if (!independent(left)) continue;
-            const double noise =
-                frobenius_norm(left) / std::sqrt(static_cast<double>(m - spans - degree));
-            return noise > rounding * diagonal(q) ? noise : 0;
+            const Residuals left = residuals(knots, q, t);
+            if (!left.uneven && independent(left.whole)) return level(left.whole, controls);
+            if (enough && other == 0 && independent(left.across))
+                other = level(left.across, controls);
         } catch (const SolverError&) { // samples crowd at one side of a span
-            return 0;
+            break;
         }
     }
-    return 0;
+    return other;
 }
 
 } // namespace batten
