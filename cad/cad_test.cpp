@@ -1,6 +1,7 @@
 // What is written is read back by Open CASCADE itself: degrees, knots, poles, closure, unit,
 // validity.
 #include "cad_formats.hpp"
+#include "test_folder.hpp"
 
 #include <batten/basis/place_knots.hpp>
 #include <batten/fit/fit.hpp>
@@ -44,7 +45,7 @@ Spline peaks() {
 }
 
 std::filesystem::path file(const std::string& name, const std::string& content) {
-    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+    const std::filesystem::path path = in_test_folder(name);
     write_file(path, content);
     return path;
 }

@@ -3,6 +3,7 @@
 #include "process.hpp"
 
 #include "message.hpp"
+#include "test_folder.hpp"
 
 #include <batten/core/core.hpp>
 
@@ -21,9 +22,7 @@ namespace {
 
 /// A shell program that runs `commands`.
 std::filesystem::path program(const std::string& name, const std::string& commands) {
-    const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) /
-        fmt::format("{}-{}", name, getpid()); // tests run side by side
+    const std::filesystem::path path = in_test_folder(name);
     std::ofstream(path) << "#!/bin/sh\n" << commands << '\n';
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
     return path;

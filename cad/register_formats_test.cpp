@@ -1,4 +1,6 @@
 // The library's own readers and writers know STEP and IGES once they were told.
+#include "test_folder.hpp"
+
 #include <batten/cad/cad.hpp>
 #include <batten/fit/fit.hpp>
 #include <batten/io/output_file.hpp>
@@ -15,10 +17,6 @@ namespace {
 
 Spline rose() {
     return fit(generate("rose"), {.shape = {.control_points = {30}}}).spline;
-}
-
-std::filesystem::path place(const std::string& name) {
-    return std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + name);
 }
 
 std::string message(const std::filesystem::path& path) {
@@ -55,7 +53,7 @@ TEST(CadFormats, splines_come_back_in_many_threads) {
     std::vector<std::thread> threads;
     for (std::size_t k = 0; k < errors.size(); ++k)
         threads.emplace_back([&, k] {
-            const auto path = place("rose" + std::to_string(k) + (k % 2 == 0 ? ".step" : ".iges"));
+            const auto path = in_test_folder("rose" + std::to_string(k) + (k % 2 == 0 ? ".step" : ".iges"));
             write_spline(path, {.spline = spline});
             errors[k] = apart(spline, read_spline(path));
         });
@@ -65,7 +63,7 @@ TEST(CadFormats, splines_come_back_in_many_threads) {
 
 TEST(CadFormats, a_crash_of_open_cascade_is_a_line) {
     cad::register_formats();
-    const auto path = place("dangling.step");
+    const auto path = in_test_folder("dangling.step");
     write_spline(path, {.spline = rose()});
     std::string text = read_file(path);
     const std::string reference = "B_SPLINE_CURVE_WITH_KNOTS('',3,(#";
@@ -79,7 +77,7 @@ TEST(CadFormats, a_crash_of_open_cascade_is_a_line) {
 }
 
 TEST(CadFormats, options_are_heeded) {
-    const auto path = place("asked.step");
+    const auto path = in_test_folder("asked.step");
     cad::register_formats();
     write_spline(path, {.spline = rose()});
     cad::register_formats({.cancelled = [] { return true; }});

@@ -59,7 +59,7 @@ class Signals(InFolder):
     def catches(self, run, number):
         """Whether its own handler is in place: a sanitized program computes for long before it has one."""
         caught = next(line for line in self.proc(run, "status").splitlines() if line.startswith("SigCgt:"))
-        return int(caught.split()[1], 16) >> (number - 1) & 1
+        return bool(int(caught.split()[1], 16) >> (number - 1) & 1)
 
     def ends(self, run, words=NOTHING):
         _, said = run.communicate(timeout=GUARD)

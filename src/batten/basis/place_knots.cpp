@@ -29,17 +29,22 @@ KnotVector knots_from_parameters(std::span<const double> parameters, int degree,
     if (n > m)
         throw InvalidInput(
             fmt::format("{} control points need at least as many samples, got {}", n, m));
+    const bool closed = closure == Closure::closed;
+    const bool both_ends = rule == KnotPlacement::both_ends;
+    if (closed && both_ends && n == m) return knots_at_parameters(parameters, degree);
     const Index count = interior_count(degree, n, closure);
     const double d = static_cast<double>(m) / static_cast<double>(count + 1);
-    // eq. 9.69 puts knot j at place j d - 1 among the samples, its mirror image at j d
-    const double shift = rule == KnotPlacement::both_ends ? 0.5 : 0;
+    // eq. 9.69 puts knot j at place j d - 1 among the samples; its mirror image is at j d, on a
+    // closed axis, whose first sample stays, at j d + 1
+    const double shift = !both_ends ? 0 : closed ? 1 : 0.5;
     std::vector<double> interior;
     for (Index j = 1; j <= count; ++j) {
         const double jd = static_cast<double>(j) * d + shift;
         const auto i = static_cast<Index>(std::floor(jd));
         const double alpha = jd - static_cast<double>(i);
+        const double next = i < m ? parameters[static_cast<std::size_t>(i)] : 1;
         interior.push_back((1 - alpha) * parameters[static_cast<std::size_t>(i - 1)] +
-                           alpha * parameters[static_cast<std::size_t>(i)]);
+                           alpha * next);
     }
     if (closure == Closure::closed) return knots_around(degree, interior, 0, 1, closure);
     return knots_around(degree, interior, parameters.front(), parameters.back(), closure);

@@ -7,7 +7,8 @@ namespace batten {
 /// Where knots go for a stated number of control points.
 enum class KnotPlacement {
     data, ///< between the parameters, every span holding some [PieglTiller1997, eq. 9.68 and 9.69]
-    both_ends, ///< the same, counted from the middle: reversed parameters give reversed knots
+    both_ends, ///< the same, counted from the middle: reversed parameters give reversed knots, on a
+               ///< closed axis those reversed about the first one
     uniform,   ///< evenly over the domain
 };
 

@@ -11,7 +11,6 @@
 #include <batten/shape/polygon.hpp>
 #include <batten/solve/cross_validation.hpp>
 #include <batten/solve/direct.hpp>
-#include <batten/solve/extreme_eigenvalues.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/solve/keep_shape.hpp>
 
@@ -28,11 +27,11 @@ struct Equations {
     Constraints held; ///< relative to the system's centre
 };
 
-/// Whether the samples reach every control point, not hardly, and determine it.
+/// Whether every control point is determined, and more than hardly reached by the samples.
 bool determined(const NormalSystem& system) {
     const std::vector<double> diagonal = system.diagonal();
     const auto [least, most] = std::ranges::minmax(diagonal);
-    if (!(least > hardly_reached * most)) return false;
+    if (hardly_reached(least, most)) return false;
     try {
         factorize(system);
     } catch (const SolverError&) {

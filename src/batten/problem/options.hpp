@@ -112,7 +112,8 @@ struct ToleranceOptions {
     double value = 0;
     /// One per sample, in place of `value`; all positive.
     std::vector<double> per_sample{};
-    /// Not more control points than this in all; 0: nine tenths of the samples.
+    /// Not more control points than this in all; 0: nine tenths of the samples, and for a curve all
+    /// of them where nothing else is within the tolerance.
     Index max_control_points = 0;
     Corners corners = Corners::automatic;
     std::vector<Index> corner_samples{};

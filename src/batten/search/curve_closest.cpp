@@ -1,6 +1,6 @@
 #include <batten/search/curve_closest.hpp>
 
-#include <batten/search/search.hpp>
+#include <batten/search/curve_knots.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,7 @@ BetweenSamples check_reached(const CurveTask& task, const CurveTrial& trial) {
 bool acceptable(const CurveTask& task, const CurveTrial& trial) {
     if (trial.control.empty() || !std::isfinite(trial.worst) || !shape_kept(task, trial))
         return false;
-    return check_reached(task, trial).excess <= wild_part;
+    return !is_wild(task, trial, std::max(1.0, trial.worst));
 }
 
 void ClosestSeen::see(const CurveTask& task, const CurveTrial& trial) {

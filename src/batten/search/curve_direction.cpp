@@ -1,5 +1,8 @@
 #include <batten/search/curve_direction.hpp>
 
+#include <batten/basis/place_knots.hpp>
+#include <batten/search/curve_knots.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,11 +15,21 @@ double mirrored(double t, double begin, double end) {
     return t == begin ? end : begin + (end - t);
 }
 
+/// The same knots run the other way. Those of a closed curve begin with the first of equal ones,
+/// as every evaluator takes them.
 KnotVector mirrored(const KnotVector& knots) {
-    std::vector<double> result;
-    for (double t : knots.knots()) result.push_back(mirrored(t, knots.begin(), knots.end()));
-    std::ranges::reverse(result);
-    return KnotVector(knots.degree(), std::move(result), knots.closure());
+    std::vector<double> interior = interior_knots(knots);
+    for (double& t : interior)
+        if (knots.closure() == Closure::open || t > knots.begin())
+            t = mirrored(t, knots.begin(), knots.end());
+    std::ranges::sort(interior);
+    return knots_around(knots.degree(), interior, knots.begin(), knots.end(), knots.closure());
+}
+
+/// How often a closed curve has the knot at its seam.
+Index seam_multiplicity(const KnotVector& knots) {
+    const std::vector<double> interior = interior_knots(knots);
+    return 1 + std::ranges::count(interior, knots.begin());
 }
 
 /// Places along a sequence, as parts of its length from the middle, weighed.
@@ -81,7 +94,9 @@ CurveTrial Turned::operator()(const CurveTrial& trial) const {
     result.weights = (*this)(trial.weights);
     result.ratio = (*this)(trial.ratio);
     const Index n = trial.control.size();
-    const Index last = trial.knots.control_count() - 1;
+    const bool closed = closure_ == Closure::closed;
+    const Index last =
+        trial.knots.control_count() - 1 + (closed ? seam_multiplicity(trial.knots) - 1 : 0);
     for (Index i = 0; i < n; ++i)
         std::ranges::copy(trial.control[(last - i) % n], result.control[i].begin());
     return result;

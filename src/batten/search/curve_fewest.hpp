@@ -9,12 +9,6 @@ namespace batten {
 /// `met` says that it is acceptable, too. The corners found are entered in the task.
 CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index most);
 
-/// The closest acceptable curve that the search above, which has missed the task's tolerances, or
-/// one at looser ones has seen; failing any, what was acceptable at the least loose of these, or
-/// what the search left. Tolerances `reached` times as loose and more are not tried.
-CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options, Index most,
-                          const CurveWithin& found, double reached);
-
 /// The best smooth curve for samples with a known level of noise: within what the noise's extremes
 /// ask for, where `met`.
 CurveWithin smooth_curve(const CurveTask& task, double noise, Index most);

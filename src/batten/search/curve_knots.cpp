@@ -2,10 +2,12 @@
 
 #include <batten/basis/place_knots.hpp>
 #include <batten/measure/between_samples.hpp>
+#include <batten/samples/samples.hpp>
 #include <batten/search/search.hpp>
 #include <batten/system/collocation.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace batten {
 
@@ -20,6 +22,15 @@ std::vector<double> first_weights(const CurveTask& task) {
     return weights;
 }
 
+CurveTrial first_trial(const CurveTask& task, KnotVector knots) {
+    return {.knots = std::move(knots),
+            .parameters = task.parameters,
+            .weights = first_weights(task),
+            .control = {},
+            .ratio = std::vector<double>(task.parameters.size(), 0),
+            .conflict = {}};
+}
+
 std::vector<double> interior_knots(const KnotVector& knots) {
     const auto all = knots.knots();
     const auto p = static_cast<std::size_t>(knots.degree());
@@ -32,11 +43,14 @@ KnotVector with_interior(const CurveTask& task, const KnotVector& old,
     return knots_around(task.degree, interior, old.begin(), old.end(), task.closure);
 }
 
+bool seam_is_corner(const CurveTask& task) {
+    return task.closure == Closure::closed && std::ranges::binary_search(task.corners, Index{0});
+}
+
 std::vector<double> lasting_knots(const CurveTask& task) {
     std::vector<double> result;
     const bool closed = task.closure == Closure::closed;
-    const bool seam_is_corner = closed && std::ranges::binary_search(task.corners, Index{0});
-    if (closed && !seam_is_corner) // one of the seam's knots is there by itself
+    if (closed && !seam_is_corner(task)) // one of the seam's knots is there by itself
         for (int k = task.seam_continuity; k + 1 < task.degree; ++k) result.push_back(0);
     for (Index i : task.corners) {
         const bool seam = closed && i == 0;
@@ -85,8 +99,12 @@ double between(const CurveTask& task, const CurveTrial& trial) {
         .excess;
 }
 
-bool is_wild(const CurveTask& task, const CurveTrial& trial) {
-    return between(task, trial) > wild_part;
+bool is_wild(const CurveTask& task, const CurveTrial& trial, double looser) {
+    std::vector<double> judged = task.tolerance;
+    const double least = unseen * diagonal(task.samples.points);
+    for (double& t : judged) t = std::max(t * looser, least);
+    return check_between(spline_of(trial), task.samples.points, trial.parameters, judged).excess >
+           wild_part;
 }
 
 } // namespace batten

@@ -13,12 +13,18 @@ inline constexpr int trial_rounds = 16;
 /// weights.
 std::vector<double> first_weights(const CurveTask& task);
 
+/// A trial on these knots before anything is solved: the task's parameters, first weights.
+CurveTrial first_trial(const CurveTask& task, KnotVector knots);
+
 /// Interior knots with their multiplicities: of a closed axis without the seam's.
 std::vector<double> interior_knots(const KnotVector& knots);
 
 /// Knots over the same domain with other interior ones.
 KnotVector with_interior(const CurveTask& task, const KnotVector& old,
                          const std::vector<double>& interior);
+
+/// Whether the seam of a closed curve is one of the corners.
+bool seam_is_corner(const CurveTask& task);
 
 /// Knots that the search keeps, ascending: of full multiplicity at corners, as many as its
 /// continuity takes at a closed curve's seam.
@@ -40,7 +46,8 @@ KnotVector first_knots(const CurveTask& task);
 /// Part of what is allowed between samples that the trial uses, at most 1 being good.
 double between(const CurveTask& task, const CurveTrial& trial);
 
-/// Whether it uses too much of it to be handed out (wild_part).
-bool is_wild(const CurveTask& task, const CurveTrial& trial);
+/// Whether it uses too much of it to be handed out (wild_part); `looser`: of what tolerances so
+/// many times the task's allow. What cannot be seen (unseen) is not wild however tight they are.
+bool is_wild(const CurveTask& task, const CurveTrial& trial, double looser = 1);
 
 } // namespace batten

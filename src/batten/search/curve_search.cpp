@@ -5,13 +5,14 @@
 #include <batten/search/curve_corners.hpp>
 #include <batten/search/curve_direction.hpp>
 #include <batten/search/curve_fewest.hpp>
-#include <batten/search/curve_through.hpp>
+#include <batten/search/curve_missed.hpp>
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/residual_noise.hpp>
 #include <batten/search/search.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -153,21 +154,18 @@ CurveTask turned_task(const CurveTask& task, const Turned& turned, const Samples
     return result;
 }
 
-/// The closest curve that may be handed out in place of one that missed the tolerance: it may meet
-/// it, or else the one through every sample may. Closer than `reached` times the tolerances, or
-/// none.
-bool finds_closer(const CurveTask& task, const ToleranceOptions& options, Index most,
-                  double reached, CurveOutcome& outcome) {
-    CurveWithin& found = outcome.found;
-    found = closest_curve(task, options, most, found, reached);
-    if (!found.met && options.max_control_points == 0) {
-        CurveWithin through = curve_through(task);
-        if (through.met)
-            found = std::move(through);
-        else if (through.trial.worst <= 1 && outcome.why == NotMet::crowded)
-            outcome.why = NotMet::wild;
+/// The last resort: the curve through every sample, or that it is wild.
+void go_through(const CurveTask& task, CurveOutcome& outcome) {
+    CurveWithin through = curve_through(task);
+    if (through.trial.control.empty() || through.trial.worst > 1) return;
+    if (!through.met) {
+        outcome.why = NotMet::wild; // whatever must hold: it holds there
+        return;
     }
-    return !found.trial.control.empty() && found.trial.worst < reached;
+    CurveWithin& found = outcome.found;
+    found.trial = std::move(through.trial);
+    found.met = true;
+    found.stages.insert(found.stages.end(), through.stages.begin(), through.stages.end());
 }
 
 /// The search in the direction that the samples themselves determine, then in the other where that
@@ -199,14 +197,22 @@ CurveOutcome searched_either_way(CurveTask& task, const FitOptions& options, Ind
     const bool answered = outcomes[best].found.met || outcomes[best].why == NotMet::noise;
     double reached = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < ways.size() && !answered; ++k) {
-        if (!finds_closer(*ways[k], options.tolerance, most, reached, outcomes[k])) continue;
-        reached = outcomes[k].found.trial.worst;
+        CurveWithin& found = outcomes[k].found;
+        found = closest_curve(*ways[k], options.tolerance, most, found, reached);
+        if (found.trial.control.empty() || !(found.trial.worst < reached)) continue;
+        reached = found.trial.worst;
         best = k;
-        if (outcomes[k].found.met) break;
+        if (found.met) break;
     }
+    if (!answered && !outcomes[best].found.met && may_go_through(task, options.tolerance))
+        go_through(*ways[best], outcomes[best]);
     CurveTrial& trial = outcomes[best].found.trial;
     if (ways[best] != &task && !trial.control.empty()) trial = turned(trial);
     return std::move(outcomes[best]);
+}
+
+bool within(const std::vector<double>& away, const std::vector<double>& tolerance) {
+    return std::ranges::equal(away, tolerance, std::ranges::less_equal());
 }
 
 } // namespace
@@ -226,8 +232,8 @@ Fitted curve_within(const Problem& given) {
     const Index most = std::max<Index>(
         task.degree + 1,
         limit > 0 ? limit : static_cast<Index>(most_part * static_cast<double>(samples.size())));
-    const CurveOutcome outcome = searched_either_way(task, options, most);
-    const CurveWithin& found = outcome.found;
+    CurveOutcome outcome = searched_either_way(task, options, most);
+    CurveWithin& found = outcome.found;
     if (found.trial.control.empty() && !found.trial.conflict.empty())
         throw ConstraintConflict(found.trial.conflict);
     if (found.trial.control.empty())
@@ -236,6 +242,10 @@ Fitted curve_within(const Problem& given) {
     const Spline spline = spline_of(found.trial);
     const Parameters parameters{{found.trial.parameters}, {}};
     std::vector<double> away = deviations(spline, samples, parameters, DeviationKind::distance);
+    // closest points may be nearer than those that the search had
+    if (outcome.why != NotMet::noise && within(away, task.tolerance) &&
+        acceptable(task, found.trial))
+        found.met = true;
     Fitted result{spline, parameters, judged(task, outcome, limit, *std::ranges::max_element(away)),
                   DeviationKind::distance};
     if (!turn.whole()) {

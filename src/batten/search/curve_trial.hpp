@@ -51,6 +51,12 @@ inline double tightest(const CurveTask& task) {
     return *std::min_element(task.tolerance.begin(), task.tolerance.end());
 }
 
+/// The task with its tolerances times a factor.
+inline CurveTask with_tolerances(CurveTask task, double factor) {
+    for (double& t : task.tolerance) t *= factor;
+    return task;
+}
+
 /// A curve on the way: knots, parameters and weights of the samples, and how far it is from its
 /// goal.
 struct CurveTrial {

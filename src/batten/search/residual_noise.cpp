@@ -19,22 +19,41 @@ namespace {
 constexpr int degree = 3;
 /// A curve with too little freedom crosses its samples at most degree + 1 times per span: with this
 /// many samples to a span that is told from the crossings of chance, every second sample.
-constexpr std::size_t samples_per_span = 16;
+constexpr Index samples_per_span = 16;
+/// Of fewer samples the parameters can follow the curve so far that hardly anything is left across
+/// it.
+constexpr Index fewest_across = 8 * samples_per_span;
 constexpr double rounding = 1e-9; ///< part of the samples' size: less is no noise
 
 /// Knots of spans of at least a length, with samples_per_span samples or more in each.
 KnotVector knots_apart(const std::vector<double>& t, double length) {
+    constexpr auto enough = static_cast<std::size_t>(samples_per_span);
     std::vector<double> interior;
     double from = t.front();
     std::size_t first = 0;
-    for (std::size_t i = 0; i + samples_per_span <= t.size(); ++i) {
-        const double at = i > 0 ? (t[i - 1] + t[i]) / 2 : from;
-        if (i - first < samples_per_span || at - from < length) continue;
+    for (std::size_t i = enough; i + enough <= t.size(); ++i) {
+        const double at = (t[i - 1] + t[i]) / 2;
+        if (i - first < enough || !(at > from && at < t.back()) || at - from < length) continue;
         interior.push_back(at);
         from = at;
         first = i;
     }
     return knots_around(degree, interior, t.front(), t.back());
+}
+
+/// Knots of ever shorter spans, the last as short as samples_per_span allows.
+std::vector<KnotVector> ever_finer(const std::vector<double>& t) {
+    const KnotVector finest = knots_apart(t, 0);
+    std::vector<KnotVector> result;
+    const auto most = static_cast<double>(t.size()) / static_cast<double>(samples_per_span);
+    for (double parts = 1; 2 * parts <= most; parts *= 2) {
+        KnotVector knots = knots_apart(t, (t.back() - t.front()) / parts);
+        if (result.empty() || knots.free_count() > result.back().free_count())
+            result.push_back(std::move(knots));
+    }
+    if (result.empty() || finest.free_count() > result.back().free_count())
+        result.push_back(finest);
+    return result;
 }
 
 /// The least-squares curve on these knots for samples at parameters in any order.
@@ -60,19 +79,14 @@ PointSet residuals(const Spline& curve, const Points& q, const std::vector<doubl
     return left;
 }
 
-/// Takes from the residuals what lies along the curve, and moves the parameters by that.
-void follow(const Spline& curve, PointSet& left, std::vector<double>& t) {
-    const PointSet tangents = evaluate(curve, Points(t.data(), left.size(), 1), std::array{1});
-    const double begin = curve.axis(0).begin();
-    const double end = curve.axis(0).end();
+/// How far each residual reaches along the curve, in its parameter.
+std::vector<double> along(const PointSet& left, const PointSet& tangents) {
+    std::vector<double> result;
     for (Index i = 0; i < left.size(); ++i) {
         const double square = dot(tangents[i], tangents[i]);
-        if (!(square > 0)) continue;
-        const double along = dot(left[i], tangents[i]) / square;
-        for (Index d = 0; d < left.dim(); ++d) left(i, d) -= along * tangents(i, d);
-        double& parameter = t[static_cast<std::size_t>(i)];
-        parameter = std::clamp(parameter + along, begin, end);
+        result.push_back(square > 0 ? dot(left[i], tangents[i]) / square : 0);
     }
+    return result;
 }
 
 /// What the least-squares curve leaves of each sample (m x dim).
@@ -85,17 +99,22 @@ struct Residuals {
     bool uneven = false;
 };
 
-Residuals residuals(const KnotVector& knots, const Points& q, std::vector<double> t) {
+Residuals whole_and_across(const KnotVector& knots, const Points& q, std::vector<double> t) {
     constexpr int rounds = 3;
-    Spline curve = least_squares(knots, q, t);
-    Residuals result{residuals(curve, q, t), {}};
-    if (q.dim() == 1) return result;
-    result.across = result.whole;
-    follow(curve, result.across, t);
-    for (int round = 1; round < rounds; ++round) {
-        curve = least_squares(knots, q, t);
-        result.across = residuals(curve, q, t);
-        follow(curve, result.across, t);
+    Residuals result;
+    for (int round = 0; round < rounds; ++round) {
+        const Spline curve = least_squares(knots, q, t);
+        PointSet left = residuals(curve, q, t);
+        if (round == 0) result.whole = left;
+        if (q.dim() == 1) return result;
+        const PointSet tangents = evaluate(curve, Points(t.data(), q.size(), 1), std::array{1});
+        const std::vector<double> steps = along(left, tangents);
+        for (std::size_t i = 0; i < t.size(); ++i) {
+            const auto row = static_cast<Index>(i);
+            for (Index d = 0; d < q.dim(); ++d) left(row, d) -= steps[i] * tangents(row, d);
+            t[i] = std::clamp(t[i] + steps[i], curve.axis(0).begin(), curve.axis(0).end());
+        }
+        result.across = std::move(left);
     }
     const auto dim = static_cast<double>(q.dim());
     for (double& x : result.across.values()) x *= std::sqrt(dim / (dim - 1));
@@ -138,7 +157,7 @@ double residual_noise(const Points& all) {
     const PointSet some = some_of(all);
     const Points q(some);
     const Index m = q.size();
-    if (m < 2 * static_cast<Index>(samples_per_span)) return 0;
+    if (m < 4 * samples_per_span) return 0;
     if (!(diagonal(q) > 0)) return 0;
     // along a line of numbers, which goes back and forth, there is no curve to follow
     const std::vector<double> t = q.dim() == 1 ? parametrize_sequence(q, Parametrization::uniform)
@@ -147,27 +166,19 @@ double residual_noise(const Points& all) {
         const double noise = frobenius_norm(left) / std::sqrt(static_cast<double>(m - controls));
         return noise > rounding * diagonal(q) ? noise : 0;
     };
-    // by what is across the curve, where the parameters spoil what is along it; few samples follow
-    // a curve that follows them
-    double other = 0;
-    const bool enough = m >= 8 * static_cast<Index>(samples_per_span);
-    Index before = 0;
-    const Index most = knots_apart(t, 0).free_count();
-    for (double parts = 1; before < most; parts *= 2) {
-        const bool last = 2 * parts * samples_per_span > static_cast<double>(m);
-        const KnotVector knots = knots_apart(t, last ? 0 : (t.back() - t.front()) / parts);
-        const Index controls = knots.free_count();
-        if (std::exchange(before, controls) == controls) continue;
+    double across = 0; // what counts where the parameters spoil what lies along the curve
+    for (const KnotVector& knots : ever_finer(t)) {
         try {
-            const Residuals left = residuals(knots, q, t);
+            const Residuals left = whole_and_across(knots, q, t);
+            const Index controls = knots.free_count();
             if (!left.uneven && independent(left.whole)) return level(left.whole, controls);
-            if (enough && other == 0 && independent(left.across))
-                other = level(left.across, controls);
+            if (m >= fewest_across && across == 0 && independent(left.across))
+                across = level(left.across, controls);
         } catch (const SolverError&) { // samples crowd at one side of a span
             break;
         }
     }
-    return other;
+    return across;
 }
 
 } // namespace batten

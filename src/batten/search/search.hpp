@@ -11,9 +11,9 @@ namespace batten {
 /// point at its own parameters (for heights the height difference).
 ///
 /// Not reaching the tolerance is no error: the report's termination is tolerance_not_met, the
-/// verdict says why, and the spline is the best smooth one found. More than nine tenths of the
-/// samples are used as control points only by a curve through all of them, where no other is within
-/// the tolerance.
+/// verdict says why, and the spline is the best smooth one found. More than nine tenths of a
+/// curve's samples become control points only on the knots of the curve through all of them, which
+/// is tried last.
 Fitted fit_by_search(const Problem& problem, std::string_view method);
 
 /// The two of which it takes the one for the problem's kind.
@@ -30,5 +30,8 @@ inline bool near_interpolation(Index control_points, Index samples) {
 
 /// Part of what is allowed between samples beyond which a spline is no reading of them.
 inline constexpr double wild_part = 3;
+/// Part of the samples' size that is allowed between them as if it were the tolerance: a tighter
+/// one says nothing of what lies there.
+inline constexpr double unseen = 1e-4;
 
 } // namespace batten

@@ -1,9 +1,14 @@
 #include <batten/basis/place_knots.hpp>
+#include <batten/search/curve_corners.hpp>
 #include <batten/search/curve_direction.hpp>
+#include <batten/search/curve_missed.hpp>
 #include <batten/search/residual_noise.hpp>
 #include <batten/search/verdict_words.hpp>
+#include <batten/system/collocation.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -41,6 +46,60 @@ TEST(ResidualNoise, follows_the_unit) {
     const double noise = residual_noise(points);
     for (double& x : points.values()) x = std::ldexp(x, 40);
     EXPECT_EQ(residual_noise(points), std::ldexp(noise, 40));
+}
+
+/// A sequence of the wave's samples with its parameters over [0, 1].
+CurveTask task_over(const Samples& samples, int degree, Closure closure) {
+    CurveTask task{.samples = samples,
+                   .tolerance = std::vector<double>(static_cast<std::size_t>(samples.size()), 1),
+                   .degree = degree,
+                   .closure = closure};
+    task.parameters = parametrize_sequence(samples.points, Parametrization::chord, closure);
+    return task;
+}
+
+TEST(KnotsThrough, are_as_many_as_the_samples_and_determined_by_them) {
+    const Samples samples{.points = wave(24, 0.3)};
+    for (const Closure closure : {Closure::open, Closure::closed})
+        for (int degree = 1; degree <= 9; ++degree)
+            for (Index corner = -1; corner < samples.size(); ++corner)
+                for (int seam = 0; seam < degree; ++seam) {
+                    CurveTask task = task_over(samples, degree, closure);
+                    task.seam_continuity = seam;
+                    const bool end =
+                        closure == Closure::open && (corner == 0 || corner + 1 == samples.size());
+                    if (corner >= 0 && !end) task.corners = spaced_corners({corner}, task);
+                    const auto knots = knots_through(task);
+                    const std::string where =
+                        fmt::format("degree {}, {}, corner {}, seam C{}", degree,
+                                    closure == Closure::open ? "open" : "closed", corner, seam);
+                    // a held seam beside a corner leaves too few samples to a piece between them
+                    const bool crowded = closure == Closure::closed && seam < degree - 1 &&
+                                         !task.corners.empty() && corner != 0 &&
+                                         std::min(corner, samples.size() - corner) <= degree;
+                    if (!knots) {
+                        EXPECT_TRUE(crowded) << where;
+                        continue;
+                    }
+                    EXPECT_EQ(knots->free_count(), samples.size()) << where;
+                    EXPECT_FALSE(undetermined(*knots, task.parameters)) << where;
+                }
+}
+
+TEST(KnotsThrough, do_without_a_held_seam_that_is_no_sample) {
+    const Samples samples{.points = wave(24, 0)};
+    CurveTask task = task_over(samples, 3, Closure::closed);
+    for (double& t : task.parameters) t = 0.1 + 0.8 * t;
+    task.seam_continuity = 0;
+    EXPECT_FALSE(knots_through(task));
+}
+
+TEST(ResidualNoise, takes_samples_that_lie_together) {
+    PointSet points = wave(600, 0);
+    for (Index i = 200; i < 400; ++i)
+        for (Index d = 0; d < 2; ++d)
+            points(i, d) = points(200, d) + 1e-19 * static_cast<double>(i);
+    EXPECT_NO_THROW(residual_noise(points));
 }
 
 TEST(Direction, one_of_a_sequence_and_its_reverse_runs_backwards) {

@@ -169,7 +169,7 @@ std::string ill_determined_words(const NormalSystem& system) {
     double smallest = largest;
     for (double x : diagonal) {
         none += x == 0 ? 1 : 0;
-        few += x > 0 && x < hardly_reached * largest ? 1 : 0;
+        few += x > 0 && hardly_reached(x, largest) ? 1 : 0;
         if (x > 0) smallest = std::min(smallest, x);
     }
     if (none + few == 0) return {};

@@ -28,9 +28,6 @@ ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tole
 /// Those of A^T D A: of each banded factor, multiplied, where the system has factors.
 ExtremeEigenvalues extreme_eigenvalues(const NormalSystem& system, double tolerance = 1e-2);
 
-/// Part of the largest diagonal entry below which samples hardly reach a control point.
-inline constexpr double hardly_reached = 1e-6;
-
 /// Eigenvalues to choose step factors by.
 struct WorkingEigenvalues {
     ExtremeEigenvalues values;

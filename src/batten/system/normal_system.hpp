@@ -87,4 +87,9 @@ std::unique_ptr<NormalSystem> assemble(const std::vector<KnotVector>& axes, cons
 PointSet centred(const PointSet& control, const std::vector<double>& centre);
 PointSet uncentred(const PointSet& control, const std::vector<double>& centre);
 
+/// Whether the samples hardly reach a control point: its entry of the diagonal beside the largest.
+inline bool hardly_reached(double entry, double largest) {
+    return entry <= 1e-6 * largest;
+}
+
 } // namespace batten
