@@ -3,13 +3,12 @@
 #include <batten/samples/corners.hpp>
 #include <batten/samples/noise.hpp>
 #include <batten/samples/samples.hpp>
+#include <batten/search/curve_calmer.hpp>
 #include <batten/search/curve_corners.hpp>
 #include <batten/search/curve_knots.hpp>
 #include <batten/search/curve_rising.hpp>
-#include <batten/search/curve_through.hpp>
 #include <batten/search/curve_verdict.hpp>
 #include <batten/search/search.hpp>
-#include <batten/system/collocation.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +29,9 @@ CurveWithin refined_with_corners(CurveTask& task, const ToleranceOptions& option
     if (options.corners == Corners::automatic) {
         CurveTask cornered = task;
         cornered.corners = spaced_corners(find_corners(task.samples.points, task.closure), task);
-        if (!cornered.corners.empty()) {
+        const bool allowed =
+            !cornered.corners.empty() && first_knots(cornered).free_count() <= most;
+        if (allowed) {
             cornered.fixed = fixed_samples(cornered);
             CurveWithin other = refined(cornered, most);
             ClosestSeen closest = best.closest;
@@ -98,34 +99,10 @@ void squeeze_further(CurveTask& task, const ToleranceOptions& options, Index mos
                         best);
     constexpr double least = 0.005; // part of the tolerance
     for (double part = 0.3; part > least && worthwhile(); part *= 0.3) {
-        std::vector<double> tolerance = task.tolerance;
-        for (double& t : tolerance) t *= part;
-        const Index took = squeeze_tighter(task, std::move(tolerance), options, most, best);
+        const Index took =
+            squeeze_tighter(task, with_tolerances(task, part).tolerance, options, most, best);
         if (took == 0 || 5 * took > 6 * controls(best)) return;
     }
-}
-
-/// The integral of the squared second derivative that the samples show where they bend by more
-/// than twice the tolerance, for parameters over [0, 1].
-double shown_roughness(const CurveTask& task) {
-    const Points& q = task.samples.points;
-    const std::vector<double>& t = task.parameters;
-    double sum = 0;
-    for (Index i = 1; i + 1 < q.size(); ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const double before = t[k] - t[k - 1];
-        const double after = t[k + 1] - t[k];
-        if (!(before > 0) || !(after > 0)) continue;
-        double square = 0;
-        for (Index d = 0; d < q.dim(); ++d) {
-            const double chord = (after * q(i - 1, d) + before * q(i + 1, d)) / (before + after);
-            square += (q(i, d) - chord) * (q(i, d) - chord);
-        }
-        const double bend = std::max(0.0, std::sqrt(square) - 2 * task.tolerance[k]);
-        const double second = 2 * bend / (before * after);
-        sum += second * second * (before + after) / 2;
-    }
-    return sum;
 }
 
 /// Where knots stand nearly as close as samples, a curve may be within the tolerance and wild
@@ -134,23 +111,20 @@ double shown_roughness(const CurveTask& task) {
 void calm_down(CurveTask& task, const ToleranceOptions& options, Index most, CurveWithin& found) {
     if (!found.trial.control.empty() && found.met && between(task, found.trial) <= 1) return;
     const bool unthinned = found.met && is_wild(task, found.trial);
-    const double tolerance = tightest(task);
-    const double shown = std::max(shown_roughness(task), tolerance * tolerance);
-    const bool noisy =
-        noise_bound(task.samples.points) >= 0.3 * tolerance && task.samples.size() <= few_samples;
+    const bool noisy = noise_bound(task.samples.points) >= 0.3 * tightest(task) &&
+                       task.samples.size() <= few_samples;
     bool calmed = false;
     for (double part : {0.1, 1.0}) {
         if (!noisy || (calmed && !is_wild(task, found.trial))) break;
-        CurveTask calmer = task;
-        calmer.roughness = part * tolerance * tolerance / shown;
-        CurveWithin again = refined_and_thinned(calmer, options, most);
+        CurveTask with_roughness = calmer(task, part);
+        CurveWithin again = refined_and_thinned(with_roughness, options, most);
         found.closest.see(task, again.closest);
         const bool better =
             again.met && (!found.met || between(task, again.trial) < between(task, found.trial));
         if (!better) continue;
         again.closest = found.closest;
         found = std::move(again);
-        task.roughness = calmer.roughness;
+        task.roughness = with_roughness.roughness;
         calmed = true;
     }
     if (!unthinned || calmed) return;
@@ -172,29 +146,32 @@ void take_out_inflections(const CurveTask& task, const ToleranceOptions& options
     const double strays = std::max(1.0, between(task, found.trial));
     const Index before = controls(found);
     std::optional<CurveWithin> fewest;
-    const Index worth = before + before / 4 + 1; // control points: beyond it the bends may stay
+    // control points: beyond it the bends may stay
+    const Index worth = std::min(most, before + std::max<Index>(before / 4, 4));
     const auto consider = [&](CurveWithin again) {
         if (!again.met || controls(again) > worth || between(task, again.trial) > strays) return;
         if (!fewest || controls(again) < controls(*fewest)) fewest = std::move(again);
     };
-    CurveWithin again = refined_further(shaped, found, most);
+    // what is refined is thinned out to half as many and fewer
+    const Index refining = std::min(most, 2 * worth + 10);
+    CurveWithin again = refined_further(shaped, found, refining);
     if (again.met) thin_out(shaped, again);
     consider(std::move(again));
     const bool quick = task.samples.size() <= squeezed_samples;
     if (before <= few_enough) { // from nothing: other knots may do
-        again = refined_and_thinned(shaped, options, most);
+        again = refined_and_thinned(shaped, options, refining);
         if (again.met && quick) squeeze(shaped, again);
         consider(std::move(again));
-    }
-    for (double part : {0.5, 0.3, 0.1}) { // closer to the samples it may bend as they do by itself
-        if (!quick || before > few_enough || (fewest && controls(*fewest) <= before)) break;
-        CurveTask tighter = task;
-        for (double& t : tighter.tolerance) t *= part;
-        again = refined_and_thinned(tighter, options, fewest ? controls(*fewest) - 1 : worth + 5);
-        if (again.met) squeeze(tighter, again);
-        if (!again.met || curve_inflections(again.trial, height) > shown) continue;
-        again.trial = rescaled(again.trial, tighter.tolerance, task.tolerance);
-        consider(std::move(again));
+        // closer to the samples it may bend as they do by itself
+        for (double part : {0.5, 0.3, 0.1}) {
+            if (!quick || (fewest && controls(*fewest) <= before)) break;
+            CurveTask tighter = with_tolerances(task, part);
+            again = refined_and_thinned(tighter, options, worth);
+            if (again.met) squeeze(tighter, again);
+            if (!again.met || curve_inflections(again.trial, height) > shown) continue;
+            again.trial = rescaled(std::move(again.trial), part);
+            consider(std::move(again));
+        }
     }
     if (fewest) found = std::move(*fewest);
 }
@@ -211,75 +188,6 @@ CurveWithin fewest_knots(CurveTask& task, const ToleranceOptions& options, Index
     found.closest.see(task, found.trial);
     found.met = found.met && !is_wild(task, found.trial);
     return found;
-}
-
-namespace {
-
-/// The closest acceptable curve on these knots with a little roughness counted: as much as rids it
-/// of what is wild.
-void see_calmer(const CurveTask& task, const KnotVector& knots, ClosestSeen& closest) {
-    constexpr double least = 1e-6;
-    constexpr double most = 1e12;
-    constexpr double step = 4;
-    constexpr int rounds = 8;
-    const double tolerance = tightest(task);
-    const double shown = std::max(shown_roughness(task), tolerance * tolerance);
-    const auto seen = [&](double part) {
-        CurveTask calmer = task;
-        calmer.roughness = part * tolerance * tolerance / shown;
-        CurveTrial trial{.knots = knots,
-                         .parameters = task.parameters,
-                         .weights = first_weights(task),
-                         .control = {},
-                         .ratio = std::vector<double>(task.parameters.size(), 0),
-                         .conflict = {}};
-        settle(calmer, trial, rounds, KnotShift::none);
-        const bool good = acceptable(task, trial);
-        if (good) closest.see(task, trial);
-        return good;
-    };
-    double part = least;
-    while (part < most && !seen(part)) part *= step;
-    for (double wild = part / step, tries = 0; tries < 4 && part < most; ++tries) {
-        const double middle = std::sqrt(wild * part);
-        (seen(middle) ? part : wild) = middle;
-    }
-}
-
-} // namespace
-
-CurveWithin closest_curve(const CurveTask& task, const ToleranceOptions& options, Index most,
-                          const CurveWithin& found, double reached) {
-    CurveWithin result = found;
-    ClosestSeen& closest = result.closest;
-    CurveTrial loosest = found.trial; // acceptable at the tightest tolerances so far, if any
-    // the same tolerances whatever was asked: powers of two of the samples' size
-    constexpr int most_idle = 2; // tolerances in a row that bring nothing closer
-    const double size = diagonal(task.samples.points);
-    const bool few = task.samples.size() <= few_samples;
-    double factor = size / tightest(task);
-    const double start = std::min({closest.worst(), reached, factor});
-    while (few && factor > start) factor /= 2;
-    for (int idle = 0; few && factor > 1 && idle < most_idle; factor /= 2) {
-        CurveTask looser = task;
-        for (double& t : looser.tolerance) t *= factor;
-        const CurveWithin again = fewest_knots(looser, options, most);
-        const double before = closest.worst();
-        closest.see(task, again.closest, factor);
-        if (again.met) loosest = rescaled(again.trial, factor);
-        idle = closest.worst() < before ? 0 : idle + 1;
-    }
-    if (task.samples.size() <= few_samples) {
-        if (!found.trial.control.empty()) see_calmer(task, found.trial.knots, closest);
-        const KnotVector through = knots_through(task);
-        const bool allowed = options.max_control_points == 0 || through.free_count() <= most;
-        if (allowed && !undetermined(through, task.parameters)) see_calmer(task, through, closest);
-    }
-    result.trial = closest.trial().value_or(loosest);
-    result.met = closest.worst() <= 1;
-    result.stages.emplace_back("closest", result.trial.knots.free_count());
-    if (result.met) thin_out(task, result);
-    return result;
 }
 
 CurveWithin smooth_curve(const CurveTask& task, double noise, Index most) {
