@@ -69,6 +69,9 @@ class Goals(Verdicts):
         _, report, words = self.fit(4, points, "-n", 20, "-m", "lspia", "--max-iterations", 5, "--stop-gradient", 1e-13)
         self.assertEqual(report["goals"][0]["goal"], "gradient")
         self.assertIn("missed      gradient", words)
+        self.fit(0, points, "-n", 20, "-m", "direct", "--stop-gradient", 1e-9)
+        _, report, words = self.fit(4, points, "-n", 20, "-m", "direct", "--stop-gradient", 1e-18)  # beyond rounding
+        self.assertIn("missed      gradient", words)
 
     def test_clspia_has_converged_only_with_its_samples_hit(self):
         points, data = self.save("w.csv", wave(150)), wave(150)

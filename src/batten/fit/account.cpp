@@ -59,7 +59,10 @@ std::vector<Goal> judged(const FitReport& report, const Problem& problem,
     } else if (stop.deviation > 0) {
         state("deviation", stop.deviation, report.deviation.maximum);
     }
-    if (stop.gradient > 0 && report.iterated())
+    // a direct solution's is rounding, but where something must hold: then it is what that costs
+    const bool direct = report.method == "direct" && !problem.options.hold.equalities() &&
+                        problem.options.hold.preserve == Preserve::nothing;
+    if (stop.gradient > 0 && (report.iterated() || direct))
         state("gradient", stop.gradient, report.gradient_norm);
     const double least = exactness * problem.size;
     if (report.held_back > least && stop.relative_gradient > 0) // it locked before its stop
