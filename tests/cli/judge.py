@@ -26,6 +26,12 @@ for number in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_DFL)
 
 
+def some(cases):
+    """All cases; a sanitizer, which is ten times as slow and judges each by itself, gets every sixth of them."""
+    cases = list(cases)
+    return cases[::6] if SANITIZED else cases
+
+
 class InFolder(unittest.TestCase):
     """Runs the command in a folder of the test's own."""
 

@@ -9,7 +9,7 @@ import unittest
 import numpy as np
 from scipy.interpolate import BSpline
 
-from judge import BATTEN, GUARD, InFolder, shared
+from judge import BATTEN, GUARD, InFolder, shared, some
 
 AIRFOILS = pathlib.Path(os.environ["BATTEN_ROOT"]).parent / "shared" / "data" / "airfoils"
 # thin sections of few samples, on which searches at a tight tolerance go astray, and some ordinary ones
@@ -86,7 +86,7 @@ class Truth(InFolder):
 
     def test_the_closest_tame_curve_is_handed_out(self):
         shared(self, "airfoils")
-        for name in SECTIONS:
+        for name in some(SECTIONS):
             points = coordinates(AIRFOILS / f"{name}.dat")
             for form in FORMS:
                 with self.subTest(section=name, form=form):
@@ -137,7 +137,7 @@ class Truth(InFolder):
                     self.assertLess(np.abs(curve(begin) - curve(begin + 1e-12)).max(), 1e-9)
 
     def test_no_more_control_points_than_are_allowed(self):
-        for seed in range(30):
+        for seed in some(range(30)):
             rng = np.random.default_rng(seed)
             t = np.linspace(0, 1, int(rng.integers(30, 120)))
             f = rng.uniform(2, 12)
@@ -192,7 +192,7 @@ class Truth(InFolder):
         self.assertNotIn("noise_level", summary)
 
     def test_uneven_distances_are_no_noise(self):
-        for seed in range(24):
+        for seed in some(range(24)):
             rng = np.random.default_rng(seed)
             count = int(rng.choice([16, 20, 33, 60, 130, 500, 1500, 5000]))
             points = uneven_samples(rng, int(rng.integers(1, 5)), count, rng.uniform(1, 20))
@@ -202,11 +202,11 @@ class Truth(InFolder):
                 self.assertLess(summary.get("noise_level", 0), tolerance / 3, summary["verdict"])
                 if count > 200:  # enough to draw every turn with
                     self.assertEqual(status, 0, summary["verdict"])
-                    some = points[::50]  # a dense search takes long
-                    self.assertLess(largest_distance(spline, some), tolerance * (1 + 1e-6))
+                    thinned = points[::50]  # a dense search takes long
+                    self.assertLess(largest_distance(spline, thinned), tolerance * (1 + 1e-6))
 
     def test_noise_on_uneven_samples_is_told_to_a_tenth(self):
-        for seed in range(8):
+        for seed in some(range(8)):
             rng = np.random.default_rng(100 + seed)
             dim = int(rng.integers(2, 5))
             noise = 10 ** rng.uniform(-3, -2)
