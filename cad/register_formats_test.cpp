@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <thread>
-#include <unistd.h>
 
 namespace batten {
 namespace {
@@ -53,7 +52,8 @@ TEST(CadFormats, splines_come_back_in_many_threads) {
     std::vector<std::thread> threads;
     for (std::size_t k = 0; k < errors.size(); ++k)
         threads.emplace_back([&, k] {
-            const auto path = in_test_folder("rose" + std::to_string(k) + (k % 2 == 0 ? ".step" : ".iges"));
+            const auto path =
+                in_test_folder("rose" + std::to_string(k) + (k % 2 == 0 ? ".step" : ".iges"));
             write_spline(path, {.spline = spline});
             errors[k] = apart(spline, read_spline(path));
         });

@@ -10,8 +10,8 @@ namespace batten {
 /// A place in a folder of this test process alone, which goes when the process ends.
 inline std::filesystem::path in_test_folder(const std::string& name) {
     struct Folder {
-        std::filesystem::path path = std::filesystem::path(testing::TempDir()) /
-                                     ("batten-cad-" + std::to_string(getpid()));
+        std::filesystem::path path =
+            std::filesystem::path(testing::TempDir()) / ("batten-cad-" + std::to_string(getpid()));
         Folder() { std::filesystem::create_directories(path); }
         Folder(const Folder&) = delete;
         Folder& operator=(const Folder&) = delete;

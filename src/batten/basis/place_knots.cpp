@@ -46,7 +46,7 @@ KnotVector knots_from_parameters(std::span<const double> parameters, int degree,
         interior.push_back((1 - alpha) * parameters[static_cast<std::size_t>(i - 1)] +
                            alpha * next);
     }
-    if (closure == Closure::closed) return knots_around(degree, interior, 0, 1, closure);
+    if (closed) return knots_around(degree, interior, 0, 1, closure);
     return knots_around(degree, interior, parameters.front(), parameters.back(), closure);
 }
 

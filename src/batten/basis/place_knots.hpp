@@ -14,7 +14,8 @@ enum class KnotPlacement {
 
 /// Knots of degree p for n free control points over [parameters.front(), parameters.back()]
 /// (closed: one period from 0 to 1), placed between the ascending `parameters` by `rule`, data or
-/// both_ends. Throws InvalidInput when n < p + 1, or n exceeds the number of parameters.
+/// both_ends (as many control points as closed parameters: knots_at_parameters). Throws
+/// InvalidInput when n < p + 1, or n exceeds the number of parameters.
 KnotVector knots_from_parameters(std::span<const double> parameters, int degree, Index n,
                                  Closure closure = Closure::open,
                                  KnotPlacement rule = KnotPlacement::data);

@@ -49,7 +49,8 @@ Requests requests_of(const Problem& problem) {
     ask(Request::size, !problem.axes.control_points.empty());
     ask(Request::knots, !shape.knots.empty());
     // of a cloud knots are even anyway
-    const bool even = problem.kind == SampleKind::cloud && shape.placement == KnotPlacement::uniform;
+    const bool even =
+        problem.kind == SampleKind::cloud && shape.placement == KnotPlacement::uniform;
     ask(Request::placement, shape.placement.has_value() && !even);
     ask(Request::parameters, problem.kind != SampleKind::cloud && shape.parameters.has_value());
     ask(Request::weights, !problem.samples.weights.empty());

@@ -119,10 +119,7 @@ struct Refinement {
 CurveTrial refine_by(const Refinement& way, const CurveTask& task, Index most,
                      ClosestSeen& closest) {
     constexpr int most_rounds = 60;
-    CurveTrial trial;
-    trial.knots = first_knots(task);
-    trial.parameters = task.parameters;
-    trial.ratio.assign(trial.parameters.size(), 0.0);
+    CurveTrial trial = first_trial(task, first_knots(task));
     CurveTrial best;
     best.worst = std::numeric_limits<double>::infinity();
     for (int round = 0; round < most_rounds; ++round) {

@@ -42,12 +42,7 @@ CurveWithin risen(const CurveTask& task, Index most, int smoothing) {
     constexpr int most_idle = 4; // counts in a row that hardly bring the curve nearer
     CurveWithin result;
     CurveTrial& good = result.trial;
-    CurveTrial trial{.knots = first_knots(task),
-                     .parameters = task.parameters,
-                     .weights = {},
-                     .control = {},
-                     .ratio = std::vector<double>(task.parameters.size(), 0.0),
-                     .conflict = {}};
+    CurveTrial trial = first_trial(task, first_knots(task));
     std::size_t missed = free_knots(task, trial);
     std::size_t met = missed;
     double nearest = std::numeric_limits<double>::infinity();
