@@ -11,12 +11,12 @@ namespace {
 
 using namespace batten;
 
-struct Problem {
+struct Case {
     std::string name;
     std::unique_ptr<NormalSystem> system;
 };
 
-Problem problem(const std::string& name, const Samples& samples, std::vector<Index> n) {
+Case problem(const std::string& name, const Samples& samples, std::vector<Index> n) {
     const Parameters t =
         parametrize(samples, Parametrization::chord, std::vector<Closure>(n.size(), Closure::open));
     std::vector<KnotVector> axes;
@@ -42,12 +42,12 @@ double median_milliseconds(Work work) {
 } // namespace
 
 int main() {
-    std::vector<Problem> problems;
+    std::vector<Case> problems;
     problems.push_back(problem("rose 501, 50", generate("rose", {501}), {50}));
     problems.push_back(problem("rose 10^6, 1000", generate("rose", {1000000}), {1000}));
     problems.push_back(
         problem("peaks 121 x 121, 41 x 41", generate("peaks", {121, 121}), {41, 41}));
-    for (const Problem& p : problems) {
+    for (const Case& p : problems) {
         fmt::print("{}\n  {:<18}{:>12}{:>12}\n", p.name, "method", "iterations", "ms");
         fmt::print("  {:<18}{:>12}{:>12.3f}\n", "direct", "-",
                    median_milliseconds([&] { solve_direct(*p.system); }));
