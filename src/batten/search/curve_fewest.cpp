@@ -132,48 +132,92 @@ void calm_down(CurveTask& task, const ToleranceOptions& options, Index most, Cur
     found.closest.see(task, found.trial);
 }
 
-/// A curve that bends more often than the samples show is searched again, without these bends.
-void take_out_inflections(const CurveTask& task, const ToleranceOptions& options, Index most,
-                          CurveWithin& found) {
-    if (!found.met || task.most_inflections >= 0 || !can_show_inflections(task)) return;
-    const double height = visible_height(task, tightest(task));
-    const Index shown = shown_inflections(task, height);
-    if (curve_inflections(found.trial, height) <= shown) return;
-    if (near_interpolation(found.trial.knots.free_count(), task.samples.size()))
-        return; // it bends with the samples' noise
-    CurveTask shaped = task;
-    limit_inflections(shaped, shown);
-    const double strays = std::max(1.0, between(task, found.trial));
-    const Index before = controls(found);
-    std::optional<CurveWithin> fewest;
-    // control points: beyond it the bends may stay
-    const Index worth = std::min(most, before + std::max<Index>(before / 4, 4));
-    const auto consider = [&](CurveWithin again) {
-        if (!again.met || controls(again) > worth || between(task, again.trial) > strays) return;
-        if (!fewest || controls(again) < controls(*fewest)) fewest = std::move(again);
-    };
-    // what is refined is thinned out to half as many and fewer
-    const Index refining = std::min(most, 2 * worth + 10);
-    CurveWithin again = refined_further(shaped, found, refining);
-    if (again.met) thin_out(shaped, again);
-    consider(std::move(again));
-    const bool quick = task.samples.size() <= squeezed_samples;
-    if (before <= few_enough) { // from nothing: other knots may do
-        again = refined_and_thinned(shaped, options, refining);
-        if (again.met && quick) squeeze(shaped, again);
+/// Looks for a curve in place of one that bends more often than the samples show.
+class WithoutBends {
+  public:
+    WithoutBends(const CurveTask& task, const ToleranceOptions& options, Index most,
+                 const CurveWithin& found)
+        : task_(task),
+          options_(options),
+          found_(found),
+          height_(visible_height(task, tightest(task))),
+          shown_(shown_inflections(task, height_)),
+          quick_(task.samples.size() <= squeezed_samples),
+          before_(controls(found)),
+          worth_(std::min(most, before_ + std::max<Index>(before_ / 4, 4))),
+          refining_(std::min(most, 2 * worth_ + 10)),
+          strays_(std::max(1.0, between(task, found.trial))) {}
+
+    /// Whether the curve bends more often, and not with the samples' noise.
+    bool wanted() const {
+        return curve_inflections(found_.trial, height_) > shown_ &&
+               !near_interpolation(before_, task_.samples.size());
+    }
+
+    /// The one of fewest control points, where there is one.
+    std::optional<CurveWithin> fewest() {
+        CurveTask shaped = task_;
+        limit_inflections(shaped, shown_);
+        further(shaped);
+        if (before_ > few_enough) return std::move(fewest_);
+        from_nothing(shaped);
+        if (quick_) closer();
+        return std::move(fewest_);
+    }
+
+  private:
+    /// From the knots of the curve that bends.
+    void further(const CurveTask& shaped) {
+        CurveWithin again = refined_further(shaped, found_, refining_);
+        if (again.met) thin_out(shaped, again);
         consider(std::move(again));
-        // closer to the samples it may bend as they do by itself
+    }
+
+    /// Other knots may do.
+    void from_nothing(CurveTask& shaped) {
+        CurveWithin again = refined_and_thinned(shaped, options_, refining_);
+        if (again.met && quick_) squeeze(shaped, again);
+        consider(std::move(again));
+    }
+
+    /// Closer to the samples it may bend as they do by itself.
+    void closer() {
         for (double part : {0.5, 0.3, 0.1}) {
-            if (!quick || (fewest && controls(*fewest) <= before)) break;
-            CurveTask tighter = with_tolerances(task, part);
-            again = refined_and_thinned(tighter, options, worth);
+            if (fewest_ && controls(*fewest_) <= before_) return;
+            CurveTask tighter = with_tolerances(task_, part);
+            CurveWithin again = refined_and_thinned(tighter, options_, worth_);
             if (again.met) squeeze(tighter, again);
-            if (!again.met || curve_inflections(again.trial, height) > shown) continue;
+            if (!again.met || curve_inflections(again.trial, height_) > shown_) continue;
             again.trial = rescaled(std::move(again.trial), part);
             consider(std::move(again));
         }
     }
-    if (fewest) found = std::move(*fewest);
+
+    void consider(CurveWithin again) {
+        if (!again.met || controls(again) > worth_ || between(task_, again.trial) > strays_) return;
+        if (!fewest_ || controls(again) < controls(*fewest_)) fewest_ = std::move(again);
+    }
+
+    const CurveTask& task_;
+    const ToleranceOptions& options_;
+    const CurveWithin& found_;
+    double height_;
+    Index shown_;
+    bool quick_;
+    Index before_;
+    Index worth_;    ///< control points: beyond it the bends may stay
+    Index refining_; ///< what is refined is thinned out to half as many and fewer
+    double strays_;
+    std::optional<CurveWithin> fewest_;
+};
+
+/// A curve that bends more often than the samples show is searched again, without these bends.
+void take_out_inflections(const CurveTask& task, const ToleranceOptions& options, Index most,
+                          CurveWithin& found) {
+    if (!found.met || task.most_inflections >= 0 || !can_show_inflections(task)) return;
+    WithoutBends search(task, options, most, found);
+    if (!search.wanted()) return;
+    if (std::optional<CurveWithin> calm = search.fewest()) found = std::move(*calm);
 }
 
 } // namespace
