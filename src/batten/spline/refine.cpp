@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <functional>
+#include <iterator>
 
 namespace batten {
 
@@ -30,58 +32,189 @@ std::vector<double> blossom(const KnotVector& knots, const PointSet& control, In
 
 namespace {
 
-/// The knots from the domain's begin to its end.
-std::span<const double> domain_knots(const KnotVector& knots) {
-    return knots.knots().subspan(
-        static_cast<std::size_t>(knots.degree()),
-        static_cast<std::size_t>(knots.control_count() - knots.degree() + 1));
-}
+/// Knots of one axis and control points, a row of coordinates for each B-spline.
+struct Strand {
+    std::vector<double> knots;
+    PointSet control;
+};
 
-/// Refined control points of one strand of control points along the axis.
-PointSet refine_strand(const KnotVector& old, const PointSet& control, const KnotVector& refined) {
-    const int p = old.degree();
-    const Index n = refined.free_count();
-    PointSet result(refined.control_count(), control.dim());
-    const Index first =
-        refined.closed() ? p : 0; // closed: the windows p to p + n - 1 start in the domain
-    for (Index j = first; j < first + n; ++j) {
-        const Index span = old.span(refined[j]);
-        const auto point = blossom(
-            old, control, span,
-            refined.knots().subspan(static_cast<std::size_t>(j + 1), static_cast<std::size_t>(p)));
-        const Index at = refined.closed() ? j % n : j;
-        for (Index k = at; k < result.size(); k += n) std::ranges::copy(point, result[k].begin());
+/// The strand with ascending knots `fresh`, none outside its domain, among its own: every control
+/// point between two old ones, whatever the spans' lengths [PieglTiller1997, algorithm A5.4].
+Strand inserted(int degree, const Strand& old, std::span<const double> fresh) {
+    const Index p = degree;
+    const Index added = static_cast<Index>(fresh.size());
+    const Index rows = old.control.size();
+    if (added == 0) return old;
+    const auto knot = [&](Index i) { return old.knots[static_cast<std::size_t>(i)]; };
+    Strand result{std::vector<double>(old.knots.size() + fresh.size()),
+                  PointSet(rows + added, old.control.dim())};
+    PointSet& q = result.control;
+    const auto place = [&](Index at, double value) {
+        result.knots[static_cast<std::size_t>(at)] = value;
+    };
+    const auto first = std::ranges::upper_bound(old.knots, fresh.front()) - old.knots.begin() - 1;
+    Index i = rows + p;         // old knots beyond it stand in their places
+    Index k = rows + p + added; // and in the result those beyond this one
+    const auto keep = [&] {
+        if (i > p) std::ranges::copy(old.control[i - p - 1], q[k - p - 1].begin());
+        place(k--, knot(i--));
+    };
+    for (Index j = added; j-- > 0;) {
+        const double x = fresh[static_cast<std::size_t>(j)];
+        while (i > first && x <= knot(i)) keep();
+        std::ranges::copy(q[k - p], q[k - p - 1].begin());
+        for (Index l = 1; l <= p; ++l) {
+            const double right = result.knots[static_cast<std::size_t>(k + l)];
+            const double part = right > x ? (right - x) / (right - knot(i - p + l)) : 0;
+            const auto here = q[k - p + l - 1];
+            const auto next = q[k - p + l];
+            for (std::size_t d = 0; d < here.size(); ++d)
+                here[d] = part * here[d] + (1 - part) * next[d];
+        }
+        place(k--, x);
     }
+    while (i >= 0) keep();
     return result;
 }
 
-Spline over_knots(const Spline& spline, Index axis, const KnotVector& refined) {
+/// What makes another spline's strands of a spline's.
+using Change = std::function<Strand(const Strand&)>;
+
+/// The spline with `change` done along one axis, over the axis `changed` then has.
+Spline along_axis(const Spline& spline, Index axis, const KnotVector& changed,
+                  const Change& change) {
     const KnotVector& old = spline.axis(axis);
     const auto along = static_cast<std::size_t>(axis);
     const GridIndex grid(spline.control_shape());
     const Index inner = grid.stride(along) * spline.dim();
     const Index values_of_block = old.control_count() * inner;
+    const std::vector<double> knots(old.knots().begin(), old.knots().end());
     std::vector<double> values;
     for (Index k = 0; k < grid.blocks(along); ++k) {
         const double* block = spline.control_points().data() + k * values_of_block;
-        const PointSet strand(std::vector<double>(block, block + values_of_block), inner);
-        const PointSet fine = refine_strand(old, strand, refined);
-        values.insert(values.end(), fine.values().begin(), fine.values().end());
+        const PointSet control(std::vector<double>(block, block + values_of_block), inner);
+        const Strand strand = change({knots, control});
+        values.insert(values.end(), strand.control.values().begin(), strand.control.values().end());
     }
     std::vector<KnotVector> axes = spline.axes();
-    axes[along] = refined;
+    axes[along] = changed;
     return {std::move(axes), PointSet(std::move(values), spline.dim())};
+}
+
+/// Those of `all` that `present` lacks, counted as often as they stand; both ascending.
+std::vector<double> missing(std::span<const double> all, std::span<const double> present) {
+    std::vector<double> result;
+    std::ranges::set_difference(all, present, std::back_inserter(result));
+    return result;
+}
+
+/// The knots of one period of a closed axis from the domain's begin on, and how they go on.
+struct Turn {
+    explicit Turn(const KnotVector& axis)
+        : count(axis.free_count()),
+          period(axis.length()),
+          first(std::ranges::lower_bound(axis.knots(), axis.begin()) - axis.knots().begin()) {
+        const auto begin = axis.knots().begin() + first;
+        knots.assign(begin, begin + count);
+    }
+
+    double operator[](Index i) const {
+        const Index turn = i >= 0 ? i / count : -((count - 1 - i) / count);
+        return knots[static_cast<std::size_t>(i - turn * count)] +
+               static_cast<double>(turn) * period;
+    }
+
+    Index count;
+    double period;
+    Index first; ///< where the axis has the first of them
+    std::vector<double> knots;
+};
+
+Strand refined_turn(const KnotVector& old, const KnotVector& refined, const Strand& strand) {
+    const Index p = old.degree();
+    const Turn from(old);
+    const Turn to(refined);
+    Strand open{{}, PointSet(from.count + 2 * p, strand.control.dim())}; // over a turn and p spans
+    for (Index i = -p; i <= from.count + 2 * p; ++i) open.knots.push_back(from[i]);
+    for (Index i = 0; i < open.control.size(); ++i) {
+        const Index at = (i - p + from.first + p * from.count) % from.count;
+        std::ranges::copy(strand.control[at], open.control[i].begin());
+    }
+    const std::vector<double> once = missing(to.knots, from.knots);
+    std::vector<double> fresh;
+    for (Index turn = 0; turn <= p && !once.empty(); ++turn)
+        for (double t : once) {
+            const double x = t + static_cast<double>(turn) * from.period;
+            if (x <= from[from.count + p]) fresh.push_back(x);
+        }
+    const Strand fine = inserted(old.degree(), open, fresh);
+    Strand result{{}, PointSet(refined.control_count(), strand.control.dim())};
+    for (Index i = 0; i < result.control.size(); ++i) {
+        const Index at = p + (i - to.first + p * to.count) % to.count;
+        std::ranges::copy(fine.control[at], result.control[i].begin());
+    }
+    return result;
+}
+
+/// The strand over the same domain, with end knots of full multiplicity.
+Strand clamped_strand(const KnotVector& axis, const Strand& strand) {
+    const auto p = static_cast<std::size_t>(axis.degree());
+    const auto more = [&](double end) {
+        const auto present = static_cast<std::size_t>(std::ranges::count(axis.knots(), end));
+        return p - std::min(p, present);
+    };
+    std::vector<double> fresh(more(axis.begin()), axis.begin());
+    fresh.insert(fresh.end(), more(axis.end()), axis.end());
+    const Strand whole = inserted(axis.degree(), strand, fresh);
+    const auto at = whole.knots.begin();
+    const Index first =
+        std::ranges::upper_bound(whole.knots, axis.begin()) - at - 1 - axis.degree();
+    const Index last = std::ranges::lower_bound(whole.knots, axis.end()) - at - 1;
+    Strand result{{}, PointSet(last + 1 - first, strand.control.dim())};
+    for (Index i = first; i <= last; ++i)
+        std::ranges::copy(whole.control[i], result.control[i - first].begin());
+    return result;
+}
+
+bool is_clamped(const KnotVector& axis) {
+    return !axis.closed() && axis[0] == axis.begin() &&
+           axis[axis.control_count() + axis.degree()] == axis.end();
+}
+
+Spline clamped_along(const Spline& spline, Index axis) {
+    const KnotVector& old = spline.axis(axis);
+    if (is_clamped(old)) return spline;
+    std::vector<double> interior;
+    for (double t : old.knots())
+        if (t > old.begin() && t < old.end()) interior.push_back(t);
+    return along_axis(spline, axis, knots_around(old.degree(), interior, old.begin(), old.end()),
+                      [&](const Strand& strand) { return clamped_strand(old, strand); });
+}
+
+/// Whether an open axis has another's knots, none of the others outside the domain.
+bool extends(const KnotVector& refined, const KnotVector& old) {
+    return std::ranges::includes(refined.knots(), old.knots()) &&
+           std::ranges::all_of(missing(refined.knots(), old.knots()),
+                               [&](double t) { return old.contains(t); });
 }
 
 } // namespace
 
 Spline refine(const Spline& spline, Index axis, const KnotVector& refined) {
     const KnotVector& old = spline.axis(axis);
-    if (refined.degree() != old.degree() || refined.closure() != old.closure() ||
-        !std::ranges::includes(domain_knots(refined), domain_knots(old)))
-        throw InvalidInput(
-            fmt::format("axis {}: the refined knots must contain the present ones", axis));
-    return over_knots(spline, axis, refined);
+    const bool alike = refined.degree() == old.degree() && refined.closure() == old.closure() &&
+                       refined.begin() == old.begin() && refined.end() == old.end();
+    if (alike && old.closed() && std::ranges::includes(Turn(refined).knots, Turn(old).knots))
+        return along_axis(spline, axis, refined,
+                          [&](const Strand& strand) { return refined_turn(old, refined, strand); });
+    if (alike && !old.closed() && extends(refined, old))
+        return along_axis(spline, axis, refined, [&](const Strand& strand) {
+            return inserted(old.degree(), strand, missing(refined.knots(), old.knots()));
+        });
+    if (alike && !old.closed() && !is_clamped(old))
+        return refine(clamped_along(spline, axis), axis, refined);
+    throw InvalidInput(
+        fmt::format("axis {}: the refined knots must contain the present ones", axis));
 }
 
 Spline insert_knot(const Spline& spline, Index axis, double t, int times) {
@@ -108,14 +241,7 @@ Spline insert_knot(const Spline& spline, Index axis, double t, int times) {
 
 Spline clamped(const Spline& spline) {
     Spline result = spline;
-    for (Index k = 0; k < spline.axis_count(); ++k) {
-        const KnotVector& old = spline.axis(k);
-        std::vector<double> interior;
-        for (double t : old.knots())
-            if (t > old.begin() && t < old.end()) interior.push_back(t);
-        result =
-            over_knots(result, k, knots_around(old.degree(), interior, old.begin(), old.end()));
-    }
+    for (Index k = 0; k < spline.axis_count(); ++k) result = clamped_along(result, k);
     return result;
 }
 

@@ -1,6 +1,7 @@
 #include "problems.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace batten {
 namespace {
@@ -86,6 +87,51 @@ TEST(Spline, inserting_knots_into_one_axis_of_a_surface_changes_nothing) {
             largest_difference(evaluate_grid(before, {at, at}), evaluate_grid(after, {at, at})),
             1e-14);
     }
+}
+
+/// Ascending knots in (0, 1), some a millionth apart, some twice.
+std::vector<double> uneven(int degree, unsigned seed) {
+    std::vector<double> knots = random_parameters(12, seed);
+    for (double& t : knots) t = 0.01 + 0.98 * t;
+    knots[3] = knots[2] + 1e-6;
+    knots[7] = knots[6] + 1e-3;
+    if (degree > 1) knots[9] = knots[8];
+    std::ranges::sort(knots);
+    return knots;
+}
+
+TEST(Spline, every_degree_keeps_its_shape_when_refined_and_clamped_on_uneven_knots) {
+    const auto at = even(0, 1, 801);
+    for (int degree = 1; degree <= max_degree; ++degree)
+        for (int kind = 0; kind < 3; ++kind) {
+            const auto seed = static_cast<unsigned>(10 * degree + kind);
+            std::vector<double> knots = uneven(degree, seed);
+            KnotVector axis;
+            if (kind < 2) {
+                axis =
+                    knots_around(degree, knots, 0, 1, kind == 0 ? Closure::open : Closure::closed);
+            } else { // ends that are close together outside the domain
+                for (int k = 0; k <= degree; ++k) {
+                    knots.push_back(1 + 1e-4 * k);
+                    knots.push_back(-1e-4 * k);
+                }
+                std::ranges::sort(knots);
+                axis = {degree, knots};
+            }
+            const Spline spline =
+                Spline::from_free({axis}, random_points(axis.free_count(), 2, seed));
+            const reference::Matrix exact = reference::curve_points(spline, at);
+            const auto away = [&](const Spline& other) {
+                return reference::difference(exact, evaluate_grid(other, {at}));
+            };
+            const std::string what = fmt::format("degree {}, kind {}", degree, kind);
+            EXPECT_LT(away(clamped(spline)), 1e-13) << what;
+            Spline fine = spline;
+            for (double t : {1e-5, 0.2, 0.2 + 1e-7, 0.9, 1 - 1e-6}) fine = insert_knot(fine, 0, t);
+            EXPECT_LT(away(fine), 1e-13) << what;
+            EXPECT_LT(away(refine(spline, 0, fine.axis(0))), 1e-13) << what;
+            EXPECT_LT(away(clamped(fine)), 1e-13) << what;
+        }
 }
 
 TEST(Spline, a_closed_curve_closes_with_its_derivatives) {
