@@ -1,6 +1,7 @@
 #include "geometry.hpp"
 
 #include <batten/core/core.hpp>
+#include <batten/samples/samples.hpp>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
@@ -17,6 +18,7 @@
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace batten::cad {
@@ -67,6 +69,56 @@ Handle(Geom_BSplineSurface) surface_of(const Spline& spline) {
     const Knots v = knots_of(spline.axis(1));
     return new Geom_BSplineSurface(poles, u.values, v.values, u.multiplicities, v.multiplicities,
                                    spline.axis(0).degree(), spline.axis(1).degree());
+}
+
+/// Throws SolverError where Open CASCADE's point and ours differ by what more than rounding makes.
+void check_point(const gp_Pnt& theirs, std::span<const double> ours, double size) {
+    constexpr double part = 1e-12; // of the size
+    double square = 0;
+    for (std::size_t d = 0; d < ours.size(); ++d) {
+        const double gap = theirs.Coord(static_cast<int>(d) + 1) - ours[d];
+        square += gap * gap;
+    }
+    if (!(std::sqrt(square) <= part * size))
+        throw SolverError(fmt::format("Open CASCADE's spline is off by {:.3g}", std::sqrt(square)));
+}
+
+/// Largest coordinate, or distance between control points where that is larger.
+double size_of(const Spline& spline) {
+    double largest = diagonal(spline.control_points());
+    for (double x : spline.control_points().values()) largest = std::max(largest, std::abs(x));
+    return largest;
+}
+
+/// Parameters in all pieces: so many in each.
+std::vector<double> in_pieces(const KnotVector& axis, int count) {
+    std::vector<double> t;
+    const std::vector<double> breaks = axis.breakpoints();
+    for (std::size_t b = 0; b + 1 < breaks.size(); ++b)
+        for (int k = 0; k < count; ++k)
+            t.push_back(breaks[b] + (breaks[b + 1] - breaks[b]) * (k + 0.5) / count);
+    return t;
+}
+
+/// A curve of degree p is known by p + 1 points of each piece.
+void check_curve(const Geom_BSplineCurve& curve, const Spline& spline) {
+    const std::vector<double> t = in_pieces(spline.axis(0), spline.axis(0).degree() + 1);
+    const PointSet exact = evaluate_grid(spline, {t});
+    const double size = size_of(spline);
+    for (std::size_t i = 0; i < t.size(); ++i)
+        check_point(curve.Value(t[i]), exact[static_cast<Index>(i)], size);
+}
+
+/// One point of each piece: what moves a control point moves some of them.
+void check_surface(const Geom_BSplineSurface& surface, const Spline& spline) {
+    const std::vector<double> u = in_pieces(spline.axis(0), 1);
+    const std::vector<double> v = in_pieces(spline.axis(1), 1);
+    const PointSet exact = evaluate_grid(spline, {u, v});
+    const double size = size_of(spline);
+    for (std::size_t i = 0; i < u.size(); ++i)
+        for (std::size_t j = 0; j < v.size(); ++j)
+            check_point(surface.Value(u[i], v[j]), exact[static_cast<Index>(i * v.size() + j)],
+                        size);
 }
 
 KnotVector axis_of(int degree, const TColStd_Array1OfReal& values,
@@ -127,11 +179,15 @@ TopoDS_Shape shape_of(const Spline& spline) {
             spline.axis_count(), spline.axis_count() == 1 ? "axis" : "axes", spline.dim()));
     const Spline open = clamped(spline);
     if (spline.axis_count() == 1) {
-        BRepBuilderAPI_MakeEdge edge(curve_of(open));
+        const auto curve = curve_of(open);
+        check_curve(*curve, spline);
+        BRepBuilderAPI_MakeEdge edge(curve);
         if (!edge.IsDone()) throw InvalidInput("the curve is too short for a CAD file's precision");
         return edge.Edge();
     }
-    BRepBuilderAPI_MakeFace face(surface_of(open), Precision::Confusion());
+    const auto surface = surface_of(open);
+    check_surface(*surface, spline);
+    BRepBuilderAPI_MakeFace face(surface, Precision::Confusion());
     if (!face.IsDone()) throw InvalidInput("the surface is too small for a CAD file's precision");
     return face.Face();
 }

@@ -15,7 +15,7 @@ class RationalSpline : public InvalidInput {
 };
 
 /// The spline as an edge or a face; throws InvalidInput for a volume, or a dimension other than 2
-/// or 3.
+/// or 3, SolverError where points of it differ from the spline's by 1e-12 of its size.
 TopoDS_Shape shape_of(const Spline& spline);
 
 /// All B-spline curves and surfaces in a shape: of faces the surfaces, of edges outside faces the

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "geometry.hpp"
+
+#include <Interface_FloatWriter.hxx>
+#include <Standard_Failure.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <filesystem>
+#include <mutex>
+#include <string>
+
+namespace batten::cad {
+
+/// The date in files of which none was asked for.
+inline constexpr const char* fixed_date = "2000-01-01T00:00:00";
+
+/// Open CASCADE keeps its settings in one place for all: one exchange at a time, and none of its
+/// printing.
+std::unique_lock<std::mutex> alone();
+
+/// Open CASCADE's name of the unit; throws InvalidInput for one that is not known.
+const char* unit_name(const std::string& unit);
+
+/// Text that both formats can hold in a string: other characters as '?'.
+std::string plain(const std::string& text);
+
+Handle(TCollection_HAsciiString) words(const std::string& text);
+
+/// Makes numbers be written with every digit they have.
+void write_all_digits(Interface_FloatWriter& writer);
+
+/// Throws SolverError with Open CASCADE's words.
+[[noreturn]] void give_up(const Standard_Failure& failure);
+
+/// Runs `work`; Open CASCADE's failures become SolverError.
+template <class Work>
+auto translated(Work work) {
+    try {
+        return work();
+    } catch (const Standard_Failure& failure) {
+        give_up(failure);
+    }
+}
+
+/// The splines of a shape that was read from a file; throws FileError and InvalidInput with its
+/// path.
+std::vector<Spline> found_in(const std::filesystem::path& path, const TopoDS_Shape& shape);
+
+} // namespace batten::cad
