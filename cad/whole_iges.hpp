@@ -5,8 +5,9 @@
 
 namespace batten::cad {
 
-/// Throws FileError for an IGES text without its last record, the terminate section: Open CASCADE
-/// reads what is there and says nothing. What is no IGES text passes.
+/// Throws FileError for an IGES text without its last record, the terminate section, with other
+/// records than that one counts, or whose B-splines lack numbers: Open CASCADE reads what is there
+/// and says nothing. What is no IGES text passes.
 void check_whole_iges(const std::filesystem::path& path, std::string_view content);
 
 } // namespace batten::cad
