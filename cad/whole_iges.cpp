@@ -33,7 +33,8 @@ std::optional<Index> whole_number(std::string_view text) {
 /// The record's number, where it belongs to the section.
 std::optional<Index> number_in(std::string_view record, char letter) {
     if (record.size() <= letter_at || record[letter_at] != letter) return std::nullopt;
-    return whole_number(record.substr(letter_at + 1, record_length - letter_at - 1));
+    const auto number = whole_number(record.substr(letter_at + 1, record_length - letter_at - 1));
+    return number && *number > 0 ? number : std::nullopt; // no digit of it is cut off
 }
 
 /// The record at the front, which goes; line ends may be missing.
