@@ -12,10 +12,11 @@ std::string step_text(const Scene& scene);
 /// The same as IGES 5.3.
 std::string iges_text(const Scene& scene);
 
-/// B-spline curves and surfaces of a STEP or IGES file, in the file's own unit. Throws FileError
+/// B-spline curves and surfaces of a STEP or IGES file, in the file's own unit, trimmed ones their
+/// part; what is left out is noted. Throws FileError
 /// when it holds none, is cut off or cannot be read, InvalidInput for rational ones, SolverError
 /// when Open CASCADE gives up.
-std::vector<Spline> parse_step(const std::filesystem::path& path, const std::string& content);
-std::vector<Spline> parse_iges(const std::filesystem::path& path, const std::string& content);
+SplineFile parse_step(const std::filesystem::path& path, const std::string& content);
+SplineFile parse_iges(const std::filesystem::path& path, const std::string& content);
 
 } // namespace batten::cad

@@ -62,19 +62,28 @@ void give_up(const Standard_Failure& failure) {
         fmt::format("{}{}{}", failure.DynamicType()->Name(), words.empty() ? "" : ": ", words)));
 }
 
-std::vector<Spline> found_in(const std::filesystem::path& path, const TopoDS_Shape& shape) {
-    std::vector<Spline> splines;
+SplineFile splines_in(const std::filesystem::path& path, const TopoDS_Shape& shape) {
+    Found found;
     try {
-        splines = splines_of(shape);
+        found = found_in(shape);
     } catch (const RationalSpline& error) {
         throw InvalidInput(fmt::format("{}: {}", path.string(), error.what()));
     } catch (const InvalidInput& error) {
         throw FileError(fmt::format("{}: {}", path.string(), error.what()));
     }
-    if (splines.empty())
+    if (found.splines.empty())
         throw FileError(path.string() + ": the file holds no B-spline curve or surface");
-    check_finite(splines, path);
-    return splines;
+    check_finite(found.splines, path);
+    SplineFile result{std::move(found.splines), {}};
+    if (found.trims_dropped > 0)
+        result.notes.push_back(fmt::format("{} of its faces {} trimmed along curves: read whole, "
+                                           "without the trims",
+                                           found.trims_dropped,
+                                           found.trims_dropped == 1 ? "is" : "are"));
+    if (found.others > 0)
+        result.notes.push_back(fmt::format("{} of its faces and edges {} no B-spline: left out",
+                                           found.others, found.others == 1 ? "is" : "are"));
+    return result;
 }
 
 } // namespace batten::cad

@@ -2,6 +2,8 @@
 
 #include "geometry.hpp"
 
+#include <batten/io/spline_file.hpp>
+
 #include <Interface_FloatWriter.hxx>
 #include <Standard_Failure.hxx>
 #include <TCollection_HAsciiString.hxx>
@@ -42,8 +44,8 @@ auto translated(Work work) {
     }
 }
 
-/// The splines of a shape that was read from a file; throws FileError and InvalidInput with its
-/// path.
-std::vector<Spline> found_in(const std::filesystem::path& path, const TopoDS_Shape& shape);
+/// The splines of a shape that was read from a file, and what is said of them; throws FileError and
+/// InvalidInput with its path.
+SplineFile splines_in(const std::filesystem::path& path, const TopoDS_Shape& shape);
 
 } // namespace batten::cad

@@ -5,16 +5,11 @@
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
-#include <BRep_Tool.hxx>
-#include <Geom_RectangularTrimmedSurface.hxx>
-#include <Geom_TrimmedCurve.hxx>
 #include <Precision.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
 #include <TColgp_Array1OfPnt.hxx>
 #include <TColgp_Array2OfPnt.hxx>
-#include <TopExp_Explorer.hxx>
-#include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <algorithm>
@@ -121,54 +116,6 @@ void check_surface(const Geom_BSplineSurface& surface, const Spline& spline) {
                         size);
 }
 
-KnotVector axis_of(int degree, const TColStd_Array1OfReal& values,
-                   const TColStd_Array1OfInteger& multiplicities) {
-    std::vector<double> knots;
-    for (int k = values.Lower(); k <= values.Upper(); ++k)
-        knots.insert(knots.end(), static_cast<std::size_t>(multiplicities.Value(k)),
-                     values.Value(k));
-    return {degree, std::move(knots)};
-}
-
-void append(PointSet& control, Index at, const gp_Pnt& p) {
-    for (Index d = 0; d < 3; ++d) control(at, d) = p.Coord(static_cast<int>(d) + 1);
-}
-
-Spline spline_of(Handle(Geom_BSplineCurve) curve) {
-    if (curve->IsRational())
-        throw RationalSpline("the curve is rational (its poles have weights); only plain B-splines "
-                             "are read");
-    if (curve->IsPeriodic()) {
-        curve = Handle(Geom_BSplineCurve)::DownCast(curve->Copy());
-        curve->SetNotPeriodic();
-    }
-    PointSet control(curve->NbPoles(), 3);
-    for (int i = 1; i <= curve->NbPoles(); ++i) append(control, i - 1, curve->Pole(i));
-    return {{axis_of(curve->Degree(), curve->Knots(), curve->Multiplicities())},
-            std::move(control)};
-}
-
-Spline spline_of(Handle(Geom_BSplineSurface) surface) {
-    if (surface->IsURational() || surface->IsVRational())
-        throw RationalSpline(
-            "the surface is rational (its poles have weights); only plain B-splines "
-            "are read");
-    if (surface->IsUPeriodic() || surface->IsVPeriodic()) {
-        surface = Handle(Geom_BSplineSurface)::DownCast(surface->Copy());
-        surface->SetUNotPeriodic();
-        surface->SetVNotPeriodic();
-    }
-    const int rows = surface->NbUPoles();
-    const int columns = surface->NbVPoles();
-    PointSet control(static_cast<Index>(rows) * columns, 3);
-    for (int i = 1; i <= rows; ++i)
-        for (int j = 1; j <= columns; ++j)
-            append(control, static_cast<Index>(i - 1) * columns + j - 1, surface->Pole(i, j));
-    return clamped({{axis_of(surface->UDegree(), surface->UKnots(), surface->UMultiplicities()),
-                     axis_of(surface->VDegree(), surface->VKnots(), surface->VMultiplicities())},
-                    std::move(control)});
-}
-
 } // namespace
 
 TopoDS_Shape shape_of(const Spline& spline) {
@@ -190,27 +137,6 @@ TopoDS_Shape shape_of(const Spline& spline) {
     BRepBuilderAPI_MakeFace face(surface, Precision::Confusion());
     if (!face.IsDone()) throw InvalidInput("the surface is too small for a CAD file's precision");
     return face.Face();
-}
-
-std::vector<Spline> splines_of(const TopoDS_Shape& shape) {
-    std::vector<Spline> result;
-    for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next()) {
-        Handle(Geom_Surface) surface = BRep_Tool::Surface(TopoDS::Face(faces.Current()));
-        if (const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(surface))
-            surface = trimmed->BasisSurface();
-        if (const auto bspline = Handle(Geom_BSplineSurface)::DownCast(surface))
-            result.push_back(spline_of(bspline));
-    }
-    for (TopExp_Explorer edges(shape, TopAbs_EDGE, TopAbs_FACE); edges.More(); edges.Next()) {
-        double first = 0;
-        double last = 0;
-        Handle(Geom_Curve) curve = BRep_Tool::Curve(TopoDS::Edge(edges.Current()), first, last);
-        if (const auto trimmed = Handle(Geom_TrimmedCurve)::DownCast(curve))
-            curve = trimmed->BasisCurve();
-        if (const auto bspline = Handle(Geom_BSplineCurve)::DownCast(curve))
-            result.push_back(spline_of(bspline));
-    }
-    return result;
 }
 
 } // namespace batten::cad

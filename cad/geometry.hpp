@@ -18,8 +18,15 @@ class RationalSpline : public InvalidInput {
 /// or 3, SolverError where points of it differ from the spline's by 1e-12 of its size.
 TopoDS_Shape shape_of(const Spline& spline);
 
-/// All B-spline curves and surfaces in a shape: of faces the surfaces, of edges outside faces the
-/// curves. Throws RationalSpline, and InvalidInput for what is no spline.
-std::vector<Spline> splines_of(const TopoDS_Shape& shape);
+/// What a shape holds: of faces the surfaces, of edges outside faces the curves, each the part that
+/// it is trimmed to.
+struct Found {
+    std::vector<Spline> splines;
+    Index trims_dropped = 0; ///< faces with other boundaries than a rectangle of parameters: whole
+    Index others = 0;        ///< faces and edges that are no B-splines: left out
+};
+
+/// Throws RationalSpline, and InvalidInput for what is no spline.
+Found found_in(const TopoDS_Shape& shape);
 
 } // namespace batten::cad

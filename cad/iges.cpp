@@ -91,7 +91,7 @@ std::string iges_text(const Scene& scene) {
     });
 }
 
-std::vector<Spline> parse_iges(const std::filesystem::path& path, const std::string& content) {
+SplineFile parse_iges(const std::filesystem::path& path, const std::string& content) {
     check_whole_iges(path, content);
     const auto lock = alone();
     return translated([&] {
@@ -109,7 +109,7 @@ std::vector<Spline> parse_iges(const std::filesystem::path& path, const std::str
         model->SetGlobalSection(global);
         UnitsMethods::SetCasCadeLengthUnit(millimetres);
         reader.TransferRoots();
-        return found_in(path, reader.OneShape());
+        return splines_in(path, reader.OneShape());
     });
 }
 

@@ -77,12 +77,14 @@ void say(std::string_view message) {
 Packer read_task(Task task, Unpacker& request) {
     const std::string path = request.take_text();
     const std::string content = request.take_text();
-    const std::vector<Spline> splines =
+    const SplineFile file =
         task == Task::read_step ? parse_step(path, content) : parse_iges(path, content);
     Packer reply;
     reply.put(static_cast<std::int64_t>(Outcome::done));
-    reply.put(static_cast<std::int64_t>(splines.size()));
-    for (const Spline& spline : splines) reply.put(spline);
+    reply.put(static_cast<std::int64_t>(file.splines.size()));
+    for (const Spline& spline : file.splines) reply.put(spline);
+    reply.put(static_cast<std::int64_t>(file.notes.size()));
+    for (const std::string& note : file.notes) reply.put(note);
     return reply;
 }
 

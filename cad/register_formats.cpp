@@ -69,18 +69,19 @@ std::string written(Task task, const Scene& scene) {
     }
 }
 
-std::vector<Spline> parsed(Task task, const std::filesystem::path& path,
-                           const std::string& content) {
+SplineFile parsed(Task task, const std::filesystem::path& path, const std::string& content) {
     Packer request;
     request.put(static_cast<std::int64_t>(task));
     request.put(path.string());
     request.put(content);
     try {
         Unpacker reply = answer(std::move(request));
-        std::vector<Spline> splines;
+        SplineFile file;
         for (std::int64_t count = reply.take_number(); count > 0; --count)
-            splines.push_back(reply.take_spline());
-        return splines;
+            file.splines.push_back(reply.take_spline());
+        for (std::int64_t count = reply.take_number(); count > 0; --count)
+            file.notes.push_back(reply.take_text());
+        return file;
     } catch (const Failed& failure) {
         throw FileError(fmt::format("{}: Open CASCADE failed while reading it ({})", path.string(),
                                     failure.what()));

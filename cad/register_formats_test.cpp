@@ -58,7 +58,7 @@ TEST(CadFormats, splines_come_back_in_many_threads) {
             errors[k] = apart(spline, read_spline(path));
         });
     for (std::thread& thread : threads) thread.join();
-    for (double error : errors) EXPECT_LT(error, 1e-8); // IGES has nine digits
+    for (double error : errors) EXPECT_LT(error, 1e-13);
 }
 
 TEST(CadFormats, a_crash_of_open_cascade_is_a_line) {

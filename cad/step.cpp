@@ -136,7 +136,7 @@ std::string step_text(const Scene& scene) {
     });
 }
 
-std::vector<Spline> parse_step(const std::filesystem::path& path, const std::string& content) {
+SplineFile parse_step(const std::filesystem::path& path, const std::string& content) {
     const auto lock = alone();
     return translated([&] {
         STEPControl_Reader reader;
@@ -146,7 +146,7 @@ std::vector<Spline> parse_step(const std::filesystem::path& path, const std::str
         reader.SetSystemLengthUnit(1);
         reader.SetSystemLengthUnit(unit_of(*reader.StepModel())); // coordinates stay as they are
         reader.TransferRoots();
-        return found_in(path, reader.OneShape());
+        return splines_in(path, reader.OneShape());
     });
 }
 

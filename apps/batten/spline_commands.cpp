@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "export_flags.hpp"
 #include "parse.hpp"
+#include "spline_input.hpp"
 
 #include <batten/io/output_file.hpp>
 #include <batten/io/output_set.hpp>
@@ -53,15 +54,15 @@ Samples in_space_of(const Spline& spline, Samples samples) {
     return samples;
 }
 
-void evaluate_spline(const std::string& path, const std::string& samples,
+void evaluate_spline(const SplineInput& input, const std::string& samples,
                      const std::string& parameters, const std::string& output,
                      std::vector<int> orders) {
     if (samples.empty() == parameters.empty())
         throw InvalidInput("evaluate: one of --samples and --parameters is needed");
-    std::vector<FileUse> inputs{{path, "the spline"}};
+    std::vector<FileUse> inputs{{input.path, "the spline"}};
     if (!parameters.empty()) inputs.push_back({parameters, "--parameters"});
     check_outputs(std::array{FileUse{output, "--output"}}, inputs);
-    const Spline spline = read_spline(path);
+    const Spline spline = read(input);
     if (orders.size() == 1) orders.resize(static_cast<std::size_t>(spline.axis_count()), 0);
     if (!parameters.empty()) {
         const PointSet table = read_table(parameters);
@@ -102,8 +103,8 @@ Samples points_of(const PointFlags& flags) {
     return read_points(flags.points, options);
 }
 
-void compare(const std::string& spline_path, const PointFlags& points) {
-    const Spline spline = read_spline(spline_path);
+void compare(const SplineInput& input, const PointFlags& points) {
+    const Spline spline = read(input);
     const Samples samples = in_space_of(spline, points_of(points));
     const Deviation d =
         summarise(closest_distances(spline, samples.points), DeviationKind::distance);
@@ -127,7 +128,13 @@ void describe_spline(const std::string& path, const Spline& spline) {
 }
 
 void describe_splines(const std::string& path) {
-    for (const Spline& spline : read_splines(path)) describe_spline(path, spline);
+    const SplineFile file = read_splines(path);
+    const std::size_t count = file.splines.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        if (count > 1) fmt::print("entity {} of {}, ", k + 1, count);
+        describe_spline(path, file.splines[k]);
+    }
+    for (const std::string& note : file.notes) fmt::print("  {}\n", note);
 }
 
 void describe_points(const std::string& path) {
@@ -145,18 +152,18 @@ void describe_points(const std::string& path) {
     for (const std::string& note : samples.notes) fmt::print("  {}\n", note);
 }
 
-void plot(const std::string& spline_path, const PointFlags& points, const std::string& output,
+void plot(const SplineInput& input, const PointFlags& points, const std::string& output,
           bool comb) {
     if (extension(output) != ".svg" && !is_stream(output))
         throw InvalidInput(fmt::format("plot: {}: a picture .svg is written", output));
-    std::vector<FileUse> inputs{{spline_path, "the spline"}};
+    std::vector<FileUse> inputs{{input.path, "the spline"}};
     if (!points.points.empty()) inputs.push_back({points.points, "the points"});
     check_outputs(std::array{FileUse{output, "--output"}}, inputs);
-    const Spline spline = read_spline(spline_path);
+    const Spline spline = read(input);
     Samples samples;
     std::vector<double> distances;
     Scene scene{.spline = spline,
-                .title = std::filesystem::path(spline_path).stem().string(),
+                .title = std::filesystem::path(input.path).stem().string(),
                 .curvature_comb = comb};
     if (!points.points.empty()) {
         samples = in_space_of(spline, points_of(points));
@@ -167,39 +174,17 @@ void plot(const std::string& spline_path, const PointFlags& points, const std::s
     write_file(output, svg_picture(scene));
 }
 
-void convert(const std::vector<std::string>& paths, const std::vector<std::string>& outputs,
-             const ExportFlags& exported, const CLI::App& app) {
-    std::vector<FileUse> inputs;
-    for (const std::string& path : paths) inputs.push_back({path, "a spline"});
-    std::vector<FileUse> written;
-    for (const std::string& output : outputs) {
-        check_output(output);
-        written.push_back({output, "--output"});
-    }
-    check_outputs(written, inputs);
-    check(exported, app, outputs);
-    std::vector<Spline> splines;
-    for (const std::string& path : paths)
-        for (Spline& spline : read_splines(path)) splines.push_back(std::move(spline));
-    Scene scene{.spline = splines.front(),
-                .title = std::filesystem::path(paths.front()).stem().string()};
-    for (std::size_t k = 1; k < splines.size(); ++k) scene.more.push_back(&splines[k]);
-    apply(exported, scene);
-    OutputSet set;
-    for (const std::string& output : outputs) set.add(output, spline_content(output, scene));
-    set.put_in_place();
-}
-
 } // namespace
 
 void add_evaluate(CLI::App& app) {
     struct Flags {
-        std::string spline, samples, parameters, output = "-";
+        SplineInput spline;
+        std::string samples, parameters, output = "-";
         std::vector<int> orders;
     };
     CLI::App* sub = app.add_subcommand("evaluate", "Points of a spline");
     auto flags = std::make_shared<Flags>();
-    sub->add_option("SPLINE", flags->spline, "Spline .json .step .iges")->required();
+    add_spline_input(*sub, flags->spline);
     sub->add_option("--samples", flags->samples,
                     "Points per axis, evenly over the domain: 200 or 40x60");
     sub->add_option("--parameters", flags->parameters, "File of parameters, one row per point");
@@ -216,12 +201,12 @@ void add_evaluate(CLI::App& app) {
 
 void add_compare(CLI::App& app) {
     struct Flags {
-        std::string spline;
+        SplineInput spline;
         PointFlags points;
     };
     CLI::App* sub = app.add_subcommand("compare", "Distances of points from a spline");
     auto flags = std::make_shared<Flags>();
-    sub->add_option("SPLINE", flags->spline, "Spline .json .step .iges")->required();
+    add_spline_input(*sub, flags->spline);
     sub->add_option("POINTS", flags->points.points, "Points")->required();
     add_point_flags(*sub, flags->points);
     sub->footer("Example:\n  batten compare part.json measured.csv");
@@ -239,14 +224,15 @@ void add_info(CLI::App& app) {
 
 void add_plot(CLI::App& app) {
     struct Flags {
-        std::string spline, output = "-";
+        SplineInput spline;
+        std::string output = "-";
         PointFlags points;
         bool comb = false;
     };
     CLI::App* sub =
         app.add_subcommand("plot", "A picture of a spline, and of points beside it, as SVG");
     auto flags = std::make_shared<Flags>();
-    sub->add_option("SPLINE", flags->spline, "Spline .json .step .iges")->required();
+    add_spline_input(*sub, flags->spline);
     sub->add_option("POINTS", flags->points.points, "Points, coloured by their distance from it");
     add_point_flags(*sub, flags->points);
     sub->add_option("--output,-o", flags->output, "Picture .svg, - for standard output")
@@ -254,28 +240,6 @@ void add_plot(CLI::App& app) {
     sub->add_flag("--comb", flags->comb, "The curvature comb of a planar curve");
     sub->footer("Example:\n  batten plot part.json measured.csv -o part.svg");
     sub->callback([flags] { plot(flags->spline, flags->points, flags->output, flags->comb); });
-}
-
-void add_convert(CLI::App& app) {
-    struct Flags {
-        std::vector<std::string> splines;
-        std::vector<std::string> outputs;
-        ExportFlags exported;
-    };
-    CLI::App* sub = app.add_subcommand("convert", "Splines in another format");
-    auto flags = std::make_shared<Flags>();
-    sub->add_option("SPLINE", flags->splines,
-                    "Splines: .json .step .iges; several where the format holds them")
-        ->required();
-    sub->add_option("--output,-o", flags->outputs,
-                    "File whose extension names the format; may be repeated")
-        ->required()
-        ->group("Output");
-    add_export_flags(*sub, flags->exported);
-    one_value_each(*sub);
-    sub->footer("Examples:\n  batten convert part.json -o part.step --unit m\n"
-                "  batten convert upper.json lower.json -o wing.igs");
-    sub->callback([flags, sub] { convert(flags->splines, flags->outputs, flags->exported, *sub); });
 }
 
 } // namespace batten::command

@@ -47,7 +47,7 @@ std::vector<SplineFormat>& registry() {
         {".json", "batten's own exact format",
          [](const Scene& scene) { return spline_json(scene.spline); },
          [](const std::filesystem::path& path, const std::string& content) {
-             return std::vector{parse_spline_json(path, content)};
+             return SplineFile{{parse_spline_json(path, content)}};
          }},
         {".svg", "picture of a planar curve, exact cubic Beziers", svg_picture, {}},
         {".obj", "Wavefront free-form curves and surfaces", obj_text, {}, true},
@@ -217,7 +217,7 @@ void check_output(const std::filesystem::path& path) {
     output_place(path);
 }
 
-std::vector<Spline> read_splines(const std::filesystem::path& path) {
+SplineFile read_splines(const std::filesystem::path& path) {
     const SplineFormat& format = spline_format(path);
     if (!format.read)
         throw InvalidInput(
@@ -225,13 +225,20 @@ std::vector<Spline> read_splines(const std::filesystem::path& path) {
     return format.read(path, read_file(path));
 }
 
-Spline read_spline(const std::filesystem::path& path) {
-    std::vector<Spline> all = read_splines(path);
-    if (all.size() != 1)
-        throw InvalidInput(fmt::format("{}: it holds {} splines, one is needed; batten convert "
-                                       "takes them apart",
-                                       path.string(), all.size()));
-    return std::move(all.front());
+Spline one_of(SplineFile file, const std::filesystem::path& path, Index entity) {
+    const Index count = std::ssize(file.splines);
+    if (entity < 0 || entity > count)
+        throw InvalidInput(fmt::format("{}: entity {}: the file holds {} spline{}, counted from 1",
+                                       path.string(), entity, count, count == 1 ? "" : "s"));
+    if (entity == 0 && count != 1)
+        throw InvalidInput(fmt::format("{}: it holds {} splines, one is needed: its number must be "
+                                       "said (entity 1 to {})",
+                                       path.string(), count, count));
+    return std::move(file.splines[static_cast<std::size_t>(std::max<Index>(entity, 1) - 1)]);
+}
+
+Spline read_spline(const std::filesystem::path& path, Index entity) {
+    return one_of(read_splines(path), path, entity);
 }
 
 bool is_spline_file(const std::filesystem::path& path) {

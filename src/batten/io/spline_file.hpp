@@ -40,6 +40,12 @@ struct Scene {
     }
 };
 
+/// What was read from a file of splines.
+struct SplineFile {
+    std::vector<Spline> splines;
+    std::vector<std::string> notes{}; ///< what of the file is not in them, a line each
+};
+
 /// What of a scene, beside splines and samples, a format shows.
 enum class SceneDetail { none, unit_and_date, chord_tolerance };
 
@@ -50,7 +56,7 @@ struct SplineFormat {
     /// The file's whole content; throws InvalidInput for a spline that the format cannot hold.
     std::function<std::string(const Scene&)> write;
     /// Parses a file's content (path only for messages); empty when the format is written only.
-    std::function<std::vector<Spline>(const std::filesystem::path&, const std::string&)> read;
+    std::function<SplineFile(const std::filesystem::path&, const std::string&)> read;
     /// Whether a file may hold several splines.
     bool several = false;
     SceneDetail shows = SceneDetail::none;
@@ -70,11 +76,15 @@ void register_format(SplineFormat format);
 /// written there: to be asked before the work, so that a fit is not lost to a slip of the pen.
 void check_output(const std::filesystem::path& path);
 
-/// Reads a spline by extension, the only one of its file; throws FileError with path and place.
-Spline read_spline(const std::filesystem::path& path);
+/// Reads all splines of a file, by extension; throws FileError with path and place.
+SplineFile read_splines(const std::filesystem::path& path);
 
-/// Reads all splines of a file.
-std::vector<Spline> read_splines(const std::filesystem::path& path);
+/// The spline of a file with this number, counted from 1, or (0) the only one; throws InvalidInput
+/// with the file's path where there is none, or several for 0.
+Spline one_of(SplineFile file, const std::filesystem::path& path, Index entity);
+
+/// Reads one spline: one_of(read_splines).
+Spline read_spline(const std::filesystem::path& path, Index entity = 0);
 
 /// Whether some format of splines that can be read has the file's extension.
 bool is_spline_file(const std::filesystem::path& path);
