@@ -15,7 +15,7 @@ class Entities(InFolder):
         self.points = [np.c_[k + np.cos(t), np.sin((k + 1) * t), 0 * t] for k in range(3)]
         for k, points in enumerate(self.points):
             np.savetxt(self.folder / f"p{k}.csv", points, delimiter=",")
-            self.good("fit", f"p{k}.csv", "-n", 12, "-q", "-o", f"s{k}.json")
+            self.good("fit", f"p{k}.csv", "-n", 24, "-q", "-o", f"s{k}.json")
         self.good("convert", "s0.json", "s1.json", "s2.json", "-o", "all.step", "-o", "all.igs")
 
     def good(self, *arguments):
