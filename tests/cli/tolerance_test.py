@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.optimize import minimize_scalar
 
-from judge import BATTEN, GUARD, InFolder, airfoils, chord, control_points, curve, evaluate, largest_distance, shared, some, surface_distances
+from judge import BATTEN, GUARD, InFolder, airfoils, chord, control_points, curve, distances, evaluate, largest_distance, shared, some, surface_distances
 
 # control points of the best peer that truly kept T = 1e-2, 1e-3, 1e-4
 PEERS = {"profile205.csv": (27, 60, 149), "glyph273.csv": (40, 109, 161), "glyph577.csv": (38, 98, 171),
@@ -134,6 +134,35 @@ class Tolerance(InFolder):
             for k in range(order + 1):
                 a, b = (curve(spline).derivative(k)(x) if k else curve(spline)(x) for x in (0, 1))
                 self.assertLess(np.linalg.norm(a - b), 1e-9 * max(1, np.linalg.norm(a)), (form, k))
+
+    def test_a_seam_asked_to_be_smooth_is_no_corner(self):
+        t = np.linspace(0, 2 * np.pi, 200, endpoint=False)
+        drop = np.c_[np.cos(t), np.sin(t) * np.sin(t / 2)]  # sharp at its first sample
+        np.savetxt(self.folder / "drop.csv", drop, delimiter=",", fmt="%.17g")
+        turns = []
+        for form in ("--closed=C0", "--closed=C1", "--closed=C2"):
+            for size in (("--tolerance", 1e-3), ("-n", 20), ("-n", 20, "--smooth", 1e-7), ("--smooth", "auto")):
+                spline, _ = self.fit("drop.csv", form, *size)
+                first, last = (curve(spline)(x, nu=1) for x in (0, 1 - 1e-13))
+                turns.append(np.linalg.norm(first - last) / np.linalg.norm(first))
+        self.assertGreater(min(turns[:4]), 0.1)  # the drop is sharp there
+        self.assertLess(max(turns[4:]), 1e-9)
+        run = self.run_batten("fit", "drop.csv", "--closed=C1", "--tolerance", 1e-3, "--corners", "0")
+        self.assertEqual((run.returncode, run.stderr), (2, "batten: corner 0: it is the seam, which is asked to be C1\n"))
+
+    def test_each_sample_has_the_smaller_of_two_tolerances(self):
+        t = np.linspace(0, 3, 200)
+        points = np.c_[t, np.sin(5 * t)]
+        own = np.where(t < 1.5, 0.001, 0.05)
+        np.savetxt(self.folder / "w.csv", points, delimiter=",", fmt="%.17g")
+        np.savetxt(self.folder / "own.csv", own)
+        for more, allowed in (((), own), (("--tolerance", 0.01), np.minimum(own, 0.01)), (("--tolerance", 1e-4), np.full(200, 1e-4))):
+            spline, summary = self.fit("w.csv", "--tolerances", "own.csv", *more)
+            ratio = (distances(spline, points) / allowed).max()
+            self.assertLessEqual(ratio, 1 + 1e-9)
+            self.assertAlmostEqual(summary["tolerance_ratio"], ratio, delta=1e-6)
+            self.assertEqual(summary["tolerance"], allowed.min())
+            self.assertEqual(summary.get("largest_tolerance"), None if allowed.min() == allowed.max() else allowed.max())
 
     def test_boundaries_hold_within_the_tolerance(self):
         terrain = shared(self, "terrain344x403.npy")

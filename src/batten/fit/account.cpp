@@ -43,8 +43,7 @@ double part_of_tolerance(const std::vector<double>& deviations,
 }
 
 /// What was stated, and what the spline and the driver's course came to.
-std::vector<Goal> judged(const FitReport& report, const Problem& problem,
-                         const std::vector<double>& deviations) {
+std::vector<Goal> judged(const FitReport& report, const Problem& problem) {
     constexpr double rounding = 1 + 1e-9;
     std::vector<Goal> goals;
     const auto state = [&](const char* name, double stated, double reached) {
@@ -52,10 +51,10 @@ std::vector<Goal> judged(const FitReport& report, const Problem& problem,
     };
     const StopRule& stop = problem.options.stop;
     if (!problem.tolerance.empty()) {
-        const double part = part_of_tolerance(deviations, problem.tolerance);
-        const bool within =
-            part <= rounding && report.termination != Termination::tolerance_not_met;
-        goals.push_back({"tolerance", report.tolerance, part * report.tolerance, within});
+        const bool within = report.tolerance_ratio <= rounding &&
+                            report.termination != Termination::tolerance_not_met;
+        goals.push_back(
+            {"tolerance", report.tolerance, report.tolerance_ratio * report.tolerance, within});
     } else if (stop.deviation > 0) {
         state("deviation", stop.deviation, report.deviation.maximum);
     }
@@ -136,7 +135,12 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     if (problem.options.keep_history && report.history.empty()) // nothing came before the answer
         report.history.push_back({0, report.gradient_norm, 0, report.deviation.maximum,
                                   report.constraint_error * report.constraint_error});
-    report.goals = judged(report, problem, away);
+    if (!problem.tolerance.empty()) {
+        report.tolerance_ratio = part_of_tolerance(away, problem.tolerance);
+        const double largest = *std::ranges::max_element(problem.tolerance);
+        if (largest > report.tolerance) report.largest_tolerance = largest;
+    }
+    report.goals = judged(report, problem);
     const Termination before = report.termination;
     report.termination = ending(report);
     report.verdict = verdict_of(report, before);

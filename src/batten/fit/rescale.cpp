@@ -72,10 +72,10 @@ FitOptions rescaled(FitOptions options, double factor) {
 FitResult rescaled(FitResult result, double factor) {
     result.spline = scaled(result.spline, factor);
     FitReport& report = result.report;
-    for (double* length :
-         {&report.deviation.maximum, &report.deviation.rms, &report.gradient_norm,
-          &report.first_gradient_norm, &report.constraint_error, &report.boundary_error,
-          &report.tolerance, &report.noise_level, &report.data_size, &report.held_back})
+    for (double* length : {&report.deviation.maximum, &report.deviation.rms, &report.gradient_norm,
+                           &report.first_gradient_norm, &report.constraint_error,
+                           &report.boundary_error, &report.tolerance, &report.largest_tolerance,
+                           &report.noise_level, &report.data_size, &report.held_back})
         *length *= factor;
     report.data_size = std::min(report.data_size, std::numeric_limits<double>::max());
     scale(result.deviations, factor);

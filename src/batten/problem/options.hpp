@@ -110,7 +110,7 @@ struct ToleranceOptions {
     /// For all samples, in their unit; 0: not stated. Where no size is stated either it is a
     /// thousandth of the diagonal of the samples' box.
     double value = 0;
-    /// One per sample, in place of `value`; all positive.
+    /// One per sample, all positive; where `value` is stated too, the smaller of both holds.
     std::vector<double> per_sample{};
     /// Not more control points than this in all; 0: nine tenths of the samples, and for a curve all
     /// of them where nothing else is within the tolerance.

@@ -206,6 +206,8 @@ std::vector<double> sample_tolerances(const Samples& samples, const ToleranceOpt
         if (!(t[i] > 0) || !std::isfinite(t[i]))
             throw InvalidInput(
                 fmt::format("tolerance {}: {} must be positive and finite", i, t[i]));
+    if (options.value > 0)
+        for (double& own : t) own = std::min(own, options.value);
     return t;
 }
 

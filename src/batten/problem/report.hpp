@@ -66,6 +66,8 @@ struct FitReport {
                                   ///< quarter of it; -1 where not counted
     Index data_inflections = -1;  ///< the same of the samples
     double tolerance = 0;         ///< as stated, 0 when none was (per sample: the smallest)
+    double largest_tolerance = 0; ///< the largest of those per sample; 0 where all are alike
+    double tolerance_ratio = 0;   ///< largest distance of a sample in parts of its own tolerance
     std::string verdict;          ///< whether and how the tolerance was met, in words
     double noise_level = 0;       ///< of the samples, where it was estimated; else 0
     double between_samples = 0; ///< part of what is allowed between samples that is used: at most 1

@@ -76,6 +76,8 @@ void add_noise(Json& json, const FitReport& r) {
 void add_tolerance(Json& json, const FitReport& r) {
     if (!(r.tolerance > 0)) return;
     json["tolerance"] = r.tolerance;
+    json["tolerance_ratio"] = number(r.tolerance_ratio);
+    if (r.largest_tolerance > 0) json["largest_tolerance"] = r.largest_tolerance;
     json["verdict"] = r.verdict;
     if (r.between_samples > 0) json["between_samples"] = number(r.between_samples);
     json["stages"] = Json::object();

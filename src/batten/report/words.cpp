@@ -55,13 +55,19 @@ namespace {
 
 using Lines = std::vector<std::pair<std::string, std::string>>;
 
+std::string tolerance_words(const FitReport& r) {
+    if (!(r.largest_tolerance > 0)) return fmt::format("{:.6g}: {}", r.tolerance, r.verdict);
+    return fmt::format("{:.6g} to {:.6g}, of its own a sample uses {:.3g} at most: {}", r.tolerance,
+                       r.largest_tolerance, r.tolerance_ratio, r.verdict);
+}
+
 Lines closeness(const FitReport& r) {
     Lines lines{
         {"deviation", fmt::format("largest {:.6g} at sample {} ({}), {}", r.deviation.maximum,
                                   r.deviation.worst_sample, to_string(r.deviation.kind),
                                   percentage(r.deviation.maximum, r.data_size))}};
     if (!(r.tolerance > 0)) return lines;
-    lines.emplace_back("tolerance", fmt::format("{:.6g}: {}", r.tolerance, r.verdict));
+    lines.emplace_back("tolerance", tolerance_words(r));
     std::string counts;
     for (const auto& [stage, count] : r.stages)
         counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", stage, count);

@@ -5,8 +5,8 @@
 
 namespace batten {
 
-/// Without the corners that have too few samples between them and the one before, or an end: a
-/// piece of the curve of its own needs degree + 1.
+/// Without the corners that have too few samples between them and the one before, or an end (a
+/// piece of the curve of its own needs degree + 1), and a seam that is to be smooth.
 std::vector<Index> spaced_corners(const std::vector<Index>& corners, const CurveTask& task) {
     const Index m = task.samples.size();
     const bool closed = task.closure == Closure::closed;
@@ -22,6 +22,7 @@ std::vector<Index> spaced_corners(const std::vector<Index>& corners, const Curve
     };
     std::vector<Index> kept;
     for (Index i : corners) {
+        if (i == 0 && task.seam_stated) continue;
         const Index before = kept.empty() ? 0 : kept.back();
         const bool after_nothing = free_seam && kept.empty();
         if (i > 0 && !after_nothing && distinct(before, i) <= task.degree) continue;
@@ -42,6 +43,9 @@ std::vector<Index> checked_corners(std::vector<Index> corners, const CurveTask& 
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     if (!closed) // the ends are free to have any direction already
         std::erase_if(corners, [&](Index i) { return i == 0 || i == m - 1; });
+    if (task.seam_stated && std::ranges::binary_search(corners, Index{0}))
+        throw InvalidInput(fmt::format("corner 0: it is the seam, which is asked to be C{}",
+                                       task.seam_continuity));
     const std::vector<Index> spaced = spaced_corners(corners, task);
     for (Index i : corners)
         if (!std::ranges::binary_search(spaced, i))

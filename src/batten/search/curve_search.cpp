@@ -72,6 +72,7 @@ CurveTask task_of(const Problem& problem) {
                    .unit = problem.options.unit,
                    .cancelled = problem.options.cancelled};
     task.seam_continuity = seam < 0 ? task.degree - 1 : seam;
+    task.seam_stated = seam > 0;
     const bool closed = task.closure == Closure::closed;
     const int least = closed ? 2 * task.degree + 2 : task.degree + 1;
     if (samples.size() < least)
@@ -140,6 +141,7 @@ CurveTask turned_task(const CurveTask& task, const Turned& turned, const Samples
                      .most_inflections = task.most_inflections,
                      .most_turning = task.most_turning,
                      .seam_continuity = task.seam_continuity,
+                     .seam_stated = task.seam_stated,
                      .unit = task.unit,
                      .cancelled = task.cancelled};
     // not those of the task: rounding would tell the directions apart

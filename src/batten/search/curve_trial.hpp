@@ -35,6 +35,8 @@ struct CurveTask {
     std::vector<Index> corners{};
     /// Order up to which derivatives agree at a closed curve's seam; degree - 1 is no condition.
     int seam_continuity = max_degree;
+    /// Whether C1 or more was asked for: then the seam is no corner.
+    bool seam_stated = false;
     /// Samples whose parameters stay, ascending: corners, the seam, those with a tangent.
     std::vector<Index> fixed{};
     /// Greatest part of what is allowed between samples (measure/between_samples.hpp) that a
