@@ -24,7 +24,8 @@ namespace {
 struct Equations {
     std::vector<KnotVector> axes;
     std::unique_ptr<NormalSystem> system;
-    Constraints held; ///< relative to the system's centre
+    Constraints held;  ///< relative to the system's centre
+    double lambda = 0; ///< factor of the roughness in the system
 };
 
 /// Whether every control point is determined, and more than hardly reached by the samples.
@@ -64,9 +65,12 @@ Equations assembled(const Problem& problem, std::string_view method) {
 }
 
 /// The given or cross-validated smoothing, entered into the system.
-Smoothing add_smoothing(NormalSystem& system, const SmoothOptions& options) {
-    const Smoothing smoothing = options.lambda > 0 ? Smoothing{.lambda = options.lambda}
-                                                   : cross_validated(system, options.order);
+Smoothing add_smoothing(NormalSystem& system, const Problem& problem) {
+    const SmoothOptions& options = problem.options.smooth;
+    const Smoothing smoothing =
+        options.lambda > 0
+            ? Smoothing{.lambda = options.lambda}
+            : cross_validated(system, problem.samples, problem.parameters, options.order);
     system.add_roughness(smoothing.lambda, options.order);
     return smoothing;
 }
@@ -119,7 +123,9 @@ Course answered(const Equations& equations, const Problem& problem, std::string_
     if (method != "direct") return iterated_from_start(equations, problem, method);
     if (problem.options.hold.preserve != Preserve::nothing)
         return solved_in_shape(equations, problem);
-    Course course{solve_direct(*equations.system, equations.held), {}};
+    const SampleRows rows{problem.samples, problem.parameters, equations.lambda,
+                          problem.options.smooth.order};
+    Course course{solve_direct(*equations.system, rows, equations.held), {}};
     course.report.gradient_norm = frobenius_norm(equations.system->gradient(course.control));
     return course;
 }
@@ -128,12 +134,12 @@ Course answered(const Equations& equations, const Problem& problem, std::string_
 
 Fitted fit_least_squares(const Problem& problem, std::string_view method) {
     Stopwatch watch;
-    const Equations equations = assembled(problem, method);
+    Equations equations = assembled(problem, method);
     problem.stop_if_cancelled();
     const double assemble_seconds = watch.lap();
-    const Smoothing smoothing = problem.options.smooth.wanted
-                                    ? add_smoothing(*equations.system, problem.options.smooth)
-                                    : Smoothing{};
+    const Smoothing smoothing =
+        problem.options.smooth.wanted ? add_smoothing(*equations.system, problem) : Smoothing{};
+    equations.lambda = smoothing.lambda;
     const double smoothing_seconds = watch.lap();
     Course course = answered(equations, problem, method);
     FitReport& report = course.report;

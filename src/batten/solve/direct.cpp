@@ -1,10 +1,13 @@
 #include <batten/solve/direct.hpp>
 
 #include <batten/core/vectors.hpp>
+#include <batten/solve/condition.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/solve/schur.hpp>
 
 #include <Eigen/Dense>
+#include <cmath>
+#include <limits>
 
 namespace batten {
 
@@ -67,19 +70,45 @@ std::vector<double> best_lengths(const Constraints& constraints, const PointSet&
     return {lengths.begin(), lengths.end()};
 }
 
-} // namespace
-
-PointSet solve_direct(const NormalSystem& system, const Constraints& given) {
-    if (given.empty()) return solve_direct(system);
-    const Constraints independent = given.independent(system.size());
-    const auto normal = factorize(system);
-    const SchurComplement schur(*normal, independent, system.size());
-    PointSet control = normal->solve(system.rhs());
+/// Control points of the unconstrained minimum, moved to that under independent constraints.
+PointSet constrained(PointSet control, const Factorization& normal,
+                     const Constraints& independent) {
+    if (independent.empty()) return control;
+    const SchurComplement schur(normal, independent, control.size());
     const Constraints constraints =
         independent.directions().empty()
             ? independent
             : independent.with_lengths(best_lengths(independent, control, schur));
-    return onto_constraints(std::move(control), constraints, *normal, schur);
+    return onto_constraints(std::move(control), constraints, normal, schur);
+}
+
+/// Factors of the normal equations that keep half of a number's digits, or none.
+std::unique_ptr<Factorization> sound_factors(const NormalSystem& system) {
+    const double most = 1 / std::sqrt(std::numeric_limits<double>::epsilon());
+    try {
+        auto factors = factorize(system);
+        return inverse_norm(system, *factors) <= most ? std::move(factors) : nullptr;
+    } catch (const SolverError&) {
+        return nullptr;
+    }
+}
+
+} // namespace
+
+PointSet solve_direct(const NormalSystem& system, const Constraints& given) {
+    const Constraints independent = given.empty() ? given : given.independent(system.size());
+    const auto normal = factorize(system);
+    return constrained(normal->solve(system.rhs()), *normal, independent);
+}
+
+PointSet solve_direct(const NormalSystem& system, const SampleRows& rows,
+                      const Constraints& given) {
+    if (system.factors().empty()) return solve_direct(system, given);
+    const Constraints independent = given.empty() ? given : given.independent(system.size());
+    if (const auto normal = sound_factors(system))
+        return constrained(normal->solve(system.rhs()), *normal, independent);
+    const RowFactorization factors(system.axes(), rows, system.centre());
+    return constrained(factors.solution(), factors, independent);
 }
 
 Constraints with_best_lengths(const NormalSystem& system, const Constraints& given) {
