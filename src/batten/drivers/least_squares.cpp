@@ -15,6 +15,8 @@
 #include <batten/solve/keep_shape.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace batten {
 
@@ -64,15 +66,33 @@ Equations assembled(const Problem& problem, std::string_view method) {
     return result;
 }
 
-/// The given or cross-validated smoothing, entered into the system.
-Smoothing add_smoothing(NormalSystem& system, const Problem& problem) {
-    const SmoothOptions& options = problem.options.smooth;
-    const Smoothing smoothing =
-        options.lambda > 0
-            ? Smoothing{.lambda = options.lambda}
-            : cross_validated(system, problem.samples, problem.parameters, options.order);
-    system.add_roughness(smoothing.lambda, options.order);
-    return smoothing;
+/// Whether the number of control points is this library's choice.
+bool size_is_open(const Problem& problem) {
+    return problem.options.shape.control_points.empty() && problem.options.shape.knots.empty();
+}
+
+/// The given or cross-validated smoothing; of a given one only the factor is known where nothing
+/// else is asked.
+Smoothing smoothing_of(const NormalSystem& system, const Problem& problem) {
+    const auto& [wanted, lambda, order] = problem.options.smooth;
+    if (!wanted) return {};
+    if (lambda == 0) return cross_validated(system, problem.samples, problem.parameters, order);
+    if (system.factors().empty() || !size_is_open(problem)) return {.lambda = lambda};
+    return smoothed_by(lambda, system, problem.samples, problem.parameters, order);
+}
+
+/// The control points that a smooth spline needs where their number is open and larger: knots a
+/// few times as dense as its kernel is wide [Silverman1984].
+std::optional<std::vector<Index>> fewer_control_points(const Problem& problem,
+                                                       const std::vector<double>& freedom) {
+    constexpr double enough = 8; // per degree of freedom
+    if (!size_is_open(problem) || freedom.empty()) return {};
+    std::vector<Index> result = problem.axes.control_points;
+    for (std::size_t k = 0; k < result.size(); ++k)
+        result[k] = std::min(result[k], static_cast<Index>(std::ceil(enough * freedom[k])) +
+                                            problem.axes.degree[k]);
+    if (result == problem.axes.control_points) return {};
+    return result;
 }
 
 /// The direct answer whose polygon bends no more often than the initial one, or not at all.
@@ -137,8 +157,17 @@ Fitted fit_least_squares(const Problem& problem, std::string_view method) {
     Equations equations = assembled(problem, method);
     problem.stop_if_cancelled();
     const double assemble_seconds = watch.lap();
-    const Smoothing smoothing =
-        problem.options.smooth.wanted ? add_smoothing(*equations.system, problem) : Smoothing{};
+    const Smoothing smoothing = smoothing_of(*equations.system, problem);
+    if (const auto fewer = fewer_control_points(problem, smoothing.axis_freedom)) {
+        Problem smaller = problem;
+        smaller.axes.control_points = *fewer;
+        smaller.options.shape.control_points = *fewer;
+        Fitted fitted = fit_least_squares(smaller, method);
+        fitted.report.seconds[1].second += assemble_seconds + watch.lap();
+        return fitted;
+    }
+    if (smoothing.lambda > 0)
+        equations.system->add_roughness(smoothing.lambda, problem.options.smooth.order);
     equations.lambda = smoothing.lambda;
     const double smoothing_seconds = watch.lap();
     Course course = answered(equations, problem, method);

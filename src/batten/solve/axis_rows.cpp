@@ -18,9 +18,9 @@ AxisRows::AxisRows(KnotVector knots, std::span<const double> parameters,
     std::vector<Index> lead;
     std::vector<Index> begin(static_cast<std::size_t>(shape.inner_size() + 2));
     for (double t : parameters) {
-        if (!knots_.contains(knots_.wrapped(t)))
-            throw outside_domain(knots_, fmt::format("parameter {}", t));
-        lead.push_back(shape.row(active_functions(knots_, t, Numbering::free), 1).lead);
+        const double inside = knots_.wrapped(t);
+        if (!knots_.contains(inside)) throw outside_domain(knots_, fmt::format("parameter {}", t));
+        lead.push_back(shape.lead(knots_.span(inside) - knots_.degree()));
         ++begin[static_cast<std::size_t>(lead.back() + 1)];
     }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -40,44 +40,50 @@ BandedQr AxisRows::empty(Index columns) const {
     return {knots_.free_count(), knots_.degree(), knots_.closure(), columns};
 }
 
-BandedQr AxisRows::reduced(double factor, Index columns, Values values) const {
-    BandedQr result = empty(columns);
-    std::vector<Extended> right(static_cast<std::size_t>(columns));
-    std::size_t next = 0;
-    const auto add_rough_up_to = [&](Index lead) {
-        for (; factor > 0 && next < rough_.size(); ++next) {
-            const Extended root = std::sqrt(Extended(factor) * Extended(rough_[next].weight));
-            const BandedRow row = result.row(rough_[next].derivatives, root);
-            if (row.lead > lead) return;
-            std::ranges::fill(right, Extended{0});
-            result.add(row, right.data());
-        }
-    };
-    for (Index i : order_) {
-        const auto at = static_cast<std::size_t>(i);
+void AxisRows::add_samples(BandedQr& qr, std::size_t begin, std::size_t end, Values values) const {
+    std::vector<Extended> right(static_cast<std::size_t>(qr.rhs_columns()));
+    for (std::size_t k = begin; k < end; ++k) {
+        const auto at = static_cast<std::size_t>(order_[k]);
         const Extended root = weights_.empty() ? 1 : std::sqrt(Extended(weights_[at]));
-        const BandedRow row =
-            result.row(active_functions(knots_, parameters_[at], Numbering::free), root);
-        add_rough_up_to(row.lead);
-        values(i, right.data());
-        for (Extended& x : right) x *= root;
-        result.add(row, right.data());
+        values(order_[k], right.data());
+        if (root != 1)
+            for (Extended& x : right) x *= root;
+        qr.add(qr.row(active_functions(knots_, parameters_[at], Numbering::free), root),
+               right.data());
     }
-    add_rough_up_to(knots_.free_count());
+}
+
+BandedQr AxisRows::reduced(Index columns, Values values) const {
+    constexpr Index chunk = 1 << 14;
+    BandedQr result = empty(columns);
+    const auto count = static_cast<Index>(order_.size());
+    if (count <= chunk) {
+        add_samples(result, 0, order_.size(), values);
+        return result;
+    }
+    std::vector<BandedQr> parts(static_cast<std::size_t>(block_count(count, chunk)), result);
+    for_each_block(count, chunk, [&](const Block& block) {
+        add_samples(parts[static_cast<std::size_t>(block.index)],
+                    static_cast<std::size_t>(block.begin), static_cast<std::size_t>(block.end),
+                    values);
+    });
+    result.merge(parts);
     return result;
 }
 
 BandedQr AxisRows::smoothed(const BandedQr& samples, double factor) const {
-    BandedQr result = empty(0);
-    std::size_t next = 0;
+    BandedQr result = empty(samples.rhs_columns());
+    std::vector<Extended> right(static_cast<std::size_t>(samples.rhs_columns()));
+    auto next = rough_.begin();
     for (Index i = 0; i < knots_.free_count(); ++i) {
-        for (; next < rough_.size(); ++next) {
-            const Extended root = std::sqrt(Extended(factor) * Extended(rough_[next].weight));
-            const BandedRow row = result.row(rough_[next].derivatives, root);
-            if (row.lead > i) break;
-            result.add(row, nullptr);
+        for (; next != rough_.end() && result.lead(next->derivatives.first) <= i; ++next) {
+            std::ranges::fill(right, Extended{0});
+            result.add(
+                result.row(next->derivatives, std::sqrt(Extended(factor) * Extended(next->weight))),
+                right.data());
         }
-        result.add(samples.row(i), nullptr);
+        std::ranges::copy(samples.rotated(i), right.begin());
+        result.add(samples.row(i), right.data());
     }
     return result;
 }

@@ -22,10 +22,9 @@ class AxisRows {
 
     /// Sum of the weights.
     double total_weight() const { return total_weight_; }
-    /// R of the samples' rows and, times the root of `factor`, the roughness's; of the samples'
-    /// right-hand sides with so many columns.
-    BandedQr reduced(double factor, Index columns, Values values) const;
-    /// The same of rows to which the samples' are reduced, without right-hand sides.
+    /// R of the samples' rows, of right-hand sides with so many columns.
+    BandedQr reduced(Index columns, Values values) const;
+    /// The same with the roughness's rows, times the root of `factor`, added to the samples'.
     BandedQr smoothed(const BandedQr& samples, double factor) const;
 
   private:
@@ -34,6 +33,8 @@ class AxisRows {
         double weight; ///< of the node
     };
     BandedQr empty(Index columns) const;
+    /// Rotates in the samples at places [begin, end) of the order.
+    void add_samples(BandedQr& qr, std::size_t begin, std::size_t end, Values values) const;
 
     KnotVector knots_;
     std::span<const double> parameters_;

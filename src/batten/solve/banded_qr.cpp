@@ -42,8 +42,7 @@ BandedQr::BandedQr(Index size, int degree, Closure closure, Index rhs_columns)
 BandedRow BandedQr::row(const ActiveFunctions& active, Extended factor) const {
     const Index inner = inner_size();
     BandedRow result;
-    result.lead = inner;
-    for (int r = 0; r <= degree_; ++r) result.lead = std::min(result.lead, active.index(r));
+    result.lead = lead(active.first);
     for (int r = 0; r <= degree_; ++r) {
         const Index column = active.index(r);
         const Extended value = factor * Extended(active.value[static_cast<std::size_t>(r)]);
@@ -98,6 +97,16 @@ void BandedQr::add(BandedRow row, Extended* rhs) {
         if (const Extended x = row.border[static_cast<std::size_t>(c)]; x != 0)
             rotate_rest(Rotation(entries(inner + c)[degree_ + 1 + c], x), inner + c, c);
     for (Index d = 0; d < columns_; ++d) left_over_ += rhs[d] * rhs[d];
+}
+
+void BandedQr::merge(const std::vector<BandedQr>& others) {
+    std::vector<Extended> right(static_cast<std::size_t>(columns_));
+    for (Index i = 0; i < size_; ++i)
+        for (const BandedQr& other : others) {
+            std::ranges::copy(other.rotated(i), right.begin());
+            add(other.row(i), right.data());
+        }
+    for (const BandedQr& other : others) left_over_ += other.left_over_;
 }
 
 void BandedQr::check() const {

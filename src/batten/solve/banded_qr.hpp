@@ -2,7 +2,9 @@
 
 #include <batten/system/banded_matrix.hpp>
 
+#include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 namespace batten {
@@ -29,6 +31,11 @@ class BandedQr {
 
     /// Columns before the border.
     Index inner_size() const { return size_ - border_; }
+    /// Leading column of a row of active functions, the first of which is given.
+    Index lead(Index first) const {
+        const bool around = first + degree_ >= size_;
+        return std::min(around ? 0 : first, inner_size());
+    }
     /// The values of active functions as a row, times a factor.
     BandedRow row(const ActiveFunctions& active, Extended factor) const;
     /// Row i of R.
@@ -36,8 +43,15 @@ class BandedQr {
     /// Rotates a row in; `rhs` is its right-hand side, and then what is left of it. Rows come in
     /// the order of their leading columns, those of the border alone last.
     void add(BandedRow row, Extended* rhs);
+    /// Rotates in the rows of others, each made of rows that led no later than the next one's.
+    void merge(const std::vector<BandedQr>& others);
     /// Sum of the squares of what no solution can take away.
     Extended left_over() const { return left_over_; }
+    Index rhs_columns() const { return columns_; }
+    /// Row i of Q^T b.
+    std::span<const Extended> rotated(Index i) const {
+        return {rhs_.data() + i * columns_, static_cast<std::size_t>(columns_)};
+    }
     /// Q^T b, (size x columns).
     const std::vector<Extended>& rotated() const { return rhs_; }
     /// Throws SolverError naming a column that the others all but span.

@@ -60,7 +60,7 @@ class Search {
 
     Quality quality(double doublings) {
         if (const auto found = seen_.find(doublings); found != seen_.end()) return found->second;
-        Quality result{std::numeric_limits<double>::infinity(), size_};
+        Quality result{std::numeric_limits<double>::infinity(), size_, {}};
         try {
             result = (*quality_)(factor(doublings));
         } catch (const SolverError&) { // too little to hold every control point, or too much
@@ -129,6 +129,13 @@ class Search {
     std::map<double, Quality> seen_;
 };
 
+Smoothing judged(const NormalSystem& system, double lambda, const Quality& quality) {
+    const auto m = static_cast<double>(system.sample_count());
+    const double mean_square = quality.squares / total_weight(system);
+    return {lambda, quality.trace, quality.axis_traces,
+            std::sqrt(mean_square * m / std::max(1.0, m - quality.trace))};
+}
+
 } // namespace
 
 Smoothing cross_validated(const NormalSystem& system, const Samples& samples,
@@ -138,10 +145,12 @@ Smoothing cross_validated(const NormalSystem& system, const Samples& samples,
     const Quality chosen = search.quality(best);
     if (!std::isfinite(chosen.squares))
         throw SolverError("no smoothing makes the samples determine every control point");
-    const auto m = static_cast<double>(system.sample_count());
-    const double mean_square = chosen.squares / total_weight(system);
-    return {search.factor(best), chosen.trace,
-            std::sqrt(mean_square * m / std::max(1.0, m - chosen.trace))};
+    return judged(system, search.factor(best), chosen);
+}
+
+Smoothing smoothed_by(double lambda, const NormalSystem& system, const Samples& samples,
+                      const Parameters& parameters, int order) {
+    return judged(system, lambda, (*smoothing_quality(system, samples, parameters, order))(lambda));
 }
 
 } // namespace batten

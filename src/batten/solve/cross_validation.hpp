@@ -8,8 +8,9 @@ namespace batten {
 struct Smoothing {
     double lambda = 0;
     double freedom = 0; ///< trace of the matrix that makes fitted values of the samples
-    double noise = 0;   ///< standard deviation that is left of a sample whose weight is the mean
-                        ///< one, all coordinates together
+    std::vector<double> axis_freedom{}; ///< along each axis, where freedom is their product
+    double noise = 0; ///< standard deviation that is left of a sample whose weight is the mean
+                      ///< one, all coordinates together
 };
 
 /// The lambda with the least V = (RSS / m) / (1 - trace / m)^2 [CravenWahba1979] for the m samples
@@ -19,5 +20,9 @@ struct Smoothing {
 /// vectors [Hutchinson1990]. Throws SolverError when no lambda gives a solvable system.
 Smoothing cross_validated(const NormalSystem& system, const Samples& samples,
                           const Parameters& parameters, int order);
+
+/// What a stated lambda leaves. Throws SolverError when it gives no solvable system.
+Smoothing smoothed_by(double lambda, const NormalSystem& system, const Samples& samples,
+                      const Parameters& parameters, int order);
 
 } // namespace batten

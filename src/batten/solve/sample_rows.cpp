@@ -41,19 +41,23 @@ void RowFactorization::reduce(std::size_t axis, double factor, const SampleRows&
             values[d] = Extended(from[d]) - Extended(centre[static_cast<std::size_t>(d % dim_)]);
     };
     const auto reduced = [&](Index o) {
-        if (axis == 0) return rows_[axis].reduced(factor, inner, samples_into);
         const Extended* block = before.data() + o * shape[axis] * inner;
-        return rows_[axis].reduced(factor, inner, [&](Index i, Extended* values) {
+        const auto block_into = [&](Index i, Extended* values) {
             std::copy_n(block + i * inner, inner, values);
-        });
+        };
+        const BandedQr qr = axis == 0 ? rows_[axis].reduced(inner, samples_into)
+                                      : rows_[axis].reduced(inner, block_into);
+        return factor > 0 ? rows_[axis].smoothed(qr, factor) : qr;
     };
+    std::vector<BandedQr> first; // R is the same for all
     for_each_chunk(outer, [&](Index o) {
-        const BandedQr qr = reduced(o);
+        BandedQr qr = reduced(o);
         std::ranges::copy(qr.rotated(), rotated_.begin() + o * n * inner);
         left[static_cast<std::size_t>(o)] = qr.left_over();
+        if (o == 0) first.push_back(std::move(qr));
     });
     left_over_ = std::accumulate(left.begin(), left.end(), left_over_);
-    axes_.push_back(rows_[axis].reduced(factor, 0, [](Index, Extended*) {}));
+    axes_.push_back(std::move(first.front()));
 }
 
 PointSet RowFactorization::solution() const {

@@ -20,7 +20,7 @@ class AxesQuality : public SmoothingQuality {
 
     Quality operator()(double lambda) const override {
         std::vector<Extended> fitted = samples_.rotated();
-        double trace = 1;
+        Quality result{0, 1, {}};
         for (std::size_t k = 0; k < samples_.axes().size(); ++k) {
             const BandedQr& rows = samples_.axes()[k];
             const BandedQr factor =
@@ -31,14 +31,16 @@ class AxesQuality : public SmoothingQuality {
             factor.solve_transposed(fitted.data(), layout);
             factor.solve(fitted.data(), layout);
             rows.apply(fitted.data(), layout);
-            trace *= factor.squares_of(rows);
+            result.axis_traces.push_back(factor.squares_of(rows));
+            result.trace *= result.axis_traces.back();
         }
         Extended squares = samples_.left_over();
         for (std::size_t i = 0; i < fitted.size(); ++i) {
             const Extended rest = samples_.rotated()[i] - fitted[i];
             squares += rest * rest;
         }
-        return {static_cast<double>(squares), trace};
+        result.squares = static_cast<double>(squares);
+        return result;
     }
 
   private:
@@ -111,8 +113,9 @@ class NetQuality : public SmoothingQuality {
         const auto factor = factorize(*smoothed);
         const PointSet control = factor->solve(system_.rhs());
         if (!residuals_) residuals_.emplace(control, system_, samples_, parameters_);
-        return {residuals_->squares(control), inner_product(probes_, factor->solve(images_)) /
-                                                  static_cast<double>(probes_.dim())};
+        return {residuals_->squares(control),
+                inner_product(probes_, factor->solve(images_)) / static_cast<double>(probes_.dim()),
+                {}};
     }
 
   private:

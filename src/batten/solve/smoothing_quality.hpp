@@ -3,13 +3,15 @@
 #include <batten/solve/sample_rows.hpp>
 
 #include <memory>
+#include <vector>
 
 namespace batten {
 
 /// What smoothing by one factor leaves.
 struct Quality {
-    double squares; ///< of the weighted residuals, summed
-    double trace;   ///< of the matrix that makes fitted values of the samples
+    double squares;                    ///< of the weighted residuals, summed
+    double trace;                      ///< of the matrix that makes fitted values of the samples
+    std::vector<double> axis_traces{}; ///< whose product it is, where it is one
 };
 
 /// Judges factors of the roughness, none of its numbers a difference of larger ones.
