@@ -139,13 +139,32 @@ Course iterated_from_start(const Equations& equations, const Problem& problem,
                     problem.options, deviation);
 }
 
+SampleRows sample_rows(const Equations& equations, const Problem& problem) {
+    return {problem.samples, problem.parameters, equations.lambda, problem.options.smooth.order};
+}
+
+/// Standard deviation of a sample of mean weight that a spline of such freedom leaves.
+double noise_of(const Spline& spline, const Problem& problem, double freedom) {
+    const std::vector<double> away =
+        parametric_deviations(spline, problem.samples, problem.parameters);
+    const std::vector<double>& weights = problem.samples.weights;
+    double squares = 0;
+    double total = 0;
+    for (std::size_t i = 0; i < away.size(); ++i) {
+        const double weight = weights.empty() ? 1 : weights[i];
+        squares += weight * away[i] * away[i];
+        total += weight;
+    }
+    const auto m = static_cast<double>(away.size());
+    return std::sqrt(squares / total * m / std::max(1.0, m - freedom));
+}
+
 Course answered(const Equations& equations, const Problem& problem, std::string_view method) {
     if (method != "direct") return iterated_from_start(equations, problem, method);
     if (problem.options.hold.preserve != Preserve::nothing)
         return solved_in_shape(equations, problem);
-    const SampleRows rows{problem.samples, problem.parameters, equations.lambda,
-                          problem.options.smooth.order};
-    Course course{solve_direct(*equations.system, rows, equations.held), {}};
+    Course course{solve_direct(*equations.system, sample_rows(equations, problem), equations.held),
+                  {}};
     course.report.gradient_norm = frobenius_norm(equations.system->gradient(course.control));
     return course;
 }
@@ -166,22 +185,27 @@ Fitted fit_least_squares(const Problem& problem, std::string_view method) {
         fitted.report.seconds[1].second += assemble_seconds + watch.lap();
         return fitted;
     }
-    if (smoothing.lambda > 0)
-        equations.system->add_roughness(smoothing.lambda, problem.options.smooth.order);
+    const auto samples = smoothing.lambda > 0 ? equations.system->clone() : nullptr;
+    if (samples) equations.system->add_roughness(smoothing.lambda, problem.options.smooth.order);
     equations.lambda = smoothing.lambda;
     const double smoothing_seconds = watch.lap();
     Course course = answered(equations, problem, method);
     FitReport& report = course.report;
     report.method = method;
     report.smoothing = smoothing.lambda;
-    report.freedom = smoothing.freedom;
-    report.noise_level = smoothing.noise;
     report.seconds = {{"assemble", assemble_seconds}, {"solve", watch.lap()}};
     if (problem.options.smooth.wanted)
         report.seconds.insert(report.seconds.begin() + 1, {"smoothing", smoothing_seconds});
-    return {
-        Spline::from_free(equations.axes, uncentred(course.control, equations.system->centre())),
-        problem.parameters, std::move(report)};
+    Spline spline =
+        Spline::from_free(equations.axes, uncentred(course.control, equations.system->centre()));
+    if (smoothing.lambda > 0 && problem.options.smooth.lambda == 0) {
+        report.freedom =
+            smoothing.freedom - freedom_held(*samples, *equations.system,
+                                             sample_rows(equations, problem), equations.held);
+        report.noise_level =
+            equations.held.empty() ? smoothing.noise : noise_of(spline, problem, report.freedom);
+    }
+    return {std::move(spline), problem.parameters, std::move(report)};
 }
 
 } // namespace batten

@@ -82,16 +82,27 @@ PointSet constrained(PointSet control, const Factorization& normal,
     return onto_constraints(std::move(control), constraints, normal, schur);
 }
 
-/// Factors of the normal equations that keep half of a number's digits, or none.
-std::unique_ptr<Factorization> sound_factors(const NormalSystem& system) {
-    const double most = 1 / std::sqrt(std::numeric_limits<double>::epsilon());
-    try {
-        auto factors = factorize(system);
-        return inverse_norm(system, *factors) <= most ? std::move(factors) : nullptr;
-    } catch (const SolverError&) {
-        return nullptr;
+/// Factors of the normal equations where these keep half of a number's digits, else of the rows.
+struct Solver {
+    std::unique_ptr<Factorization> normal;
+    std::unique_ptr<RowFactorization> rows;
+
+    Solver(const NormalSystem& system, const SampleRows& of) {
+        const double most = 1 / std::sqrt(std::numeric_limits<double>::epsilon());
+        const bool has_rows = !system.factors().empty();
+        try {
+            normal = factorize(system);
+            if (!has_rows || inverse_norm(system, *normal) <= most) return;
+        } catch (const SolverError&) {
+            if (!has_rows) throw;
+        }
+        rows = std::make_unique<RowFactorization>(system.axes(), of, system.centre());
     }
-}
+    const Factorization& factors() const { return rows ? *rows : *normal; }
+    PointSet solution(const NormalSystem& system) const {
+        return rows ? rows->solution() : normal->solve(system.rhs());
+    }
+};
 
 } // namespace
 
@@ -103,12 +114,28 @@ PointSet solve_direct(const NormalSystem& system, const Constraints& given) {
 
 PointSet solve_direct(const NormalSystem& system, const SampleRows& rows,
                       const Constraints& given) {
-    if (system.factors().empty()) return solve_direct(system, given);
     const Constraints independent = given.empty() ? given : given.independent(system.size());
-    if (const auto normal = sound_factors(system))
-        return constrained(normal->solve(system.rhs()), *normal, independent);
-    const RowFactorization factors(system.axes(), rows, system.centre());
-    return constrained(factors.solution(), factors, independent);
+    const Solver solver(system, rows);
+    return constrained(solver.solution(system), solver.factors(), independent);
+}
+
+double freedom_held(const NormalSystem& samples, const NormalSystem& smoothed,
+                    const SampleRows& rows, const Constraints& given) {
+    if (given.empty()) return 0;
+    const Constraints independent = given.independent(samples.size());
+    const Solver solver(smoothed, rows);
+    const SchurComplement schur(solver.factors(), independent, samples.size());
+    PointSet unit(independent.size(), independent.size());
+    for (Index i = 0; i < unit.size(); ++i) unit(i, i) = 1;
+    const PointSet pulls =
+        solver.factors().solve(independent.apply_transposed(unit, samples.size()));
+    PointSet images(pulls.size(), pulls.dim());
+    samples.apply(pulls, images);
+    const PointSet moved =
+        schur.solve(independent.apply(solver.factors().solve(std::move(images))));
+    double sum = 0;
+    for (Index i = 0; i < moved.size(); ++i) sum += moved(i, i);
+    return sum;
 }
 
 Constraints with_best_lengths(const NormalSystem& system, const Constraints& given) {

@@ -21,6 +21,12 @@ PointSet solve_direct(const NormalSystem& system, const Constraints& constraints
 PointSet solve_direct(const NormalSystem& system, const SampleRows& rows,
                       const Constraints& constraints);
 
+/// By how much constraints reduce the trace of the matrix that makes fitted values of the samples,
+/// for their system without roughness and with it: by trace (C S^{-1} C^T)^{-1} C S^{-1} G S^{-1}
+/// C^T. Free lengths count as held.
+double freedom_held(const NormalSystem& samples, const NormalSystem& smoothed,
+                    const SampleRows& rows, const Constraints& constraints);
+
 /// Independent constraints with their directions' lengths as the fit above chooses them.
 Constraints with_best_lengths(const NormalSystem& system, const Constraints& constraints);
 
