@@ -15,6 +15,8 @@
 #include <batten/solve/keep_shape.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace batten {
 
@@ -24,7 +26,8 @@ namespace {
 struct Equations {
     std::vector<KnotVector> axes;
     std::unique_ptr<NormalSystem> system;
-    Constraints held; ///< relative to the system's centre
+    Constraints held;  ///< relative to the system's centre
+    double lambda = 0; ///< factor of the roughness in the system
 };
 
 /// Whether every control point is determined, and more than hardly reached by the samples.
@@ -63,12 +66,33 @@ Equations assembled(const Problem& problem, std::string_view method) {
     return result;
 }
 
-/// The given or cross-validated smoothing, entered into the system.
-Smoothing add_smoothing(NormalSystem& system, const SmoothOptions& options) {
-    const Smoothing smoothing = options.lambda > 0 ? Smoothing{.lambda = options.lambda}
-                                                   : cross_validated(system, options.order);
-    system.add_roughness(smoothing.lambda, options.order);
-    return smoothing;
+/// Whether the number of control points is this library's choice.
+bool size_is_open(const Problem& problem) {
+    return problem.options.shape.control_points.empty() && problem.options.shape.knots.empty();
+}
+
+/// The given or cross-validated smoothing; of a given one only the factor is known where nothing
+/// else is asked.
+Smoothing smoothing_of(const NormalSystem& system, const Problem& problem) {
+    const auto& [wanted, lambda, order] = problem.options.smooth;
+    if (!wanted) return {};
+    if (lambda == 0) return cross_validated(system, problem.samples, problem.parameters, order);
+    if (system.factors().empty() || !size_is_open(problem)) return {.lambda = lambda};
+    return smoothed_by(lambda, system, problem.samples, problem.parameters, order);
+}
+
+/// The control points that a smooth spline needs where their number is open and larger: knots a
+/// few times as dense as its kernel is wide [Silverman1984].
+std::optional<std::vector<Index>> fewer_control_points(const Problem& problem,
+                                                       const std::vector<double>& freedom) {
+    constexpr double enough = 8; // per degree of freedom
+    if (!size_is_open(problem) || freedom.empty()) return {};
+    std::vector<Index> result = problem.axes.control_points;
+    for (std::size_t k = 0; k < result.size(); ++k)
+        result[k] = std::min(result[k], static_cast<Index>(std::ceil(enough * freedom[k])) +
+                                            problem.axes.degree[k]);
+    if (result == problem.axes.control_points) return {};
+    return result;
 }
 
 /// The direct answer whose polygon bends no more often than the initial one, or not at all.
@@ -115,11 +139,32 @@ Course iterated_from_start(const Equations& equations, const Problem& problem,
                     problem.options, deviation);
 }
 
+SampleRows sample_rows(const Equations& equations, const Problem& problem) {
+    return {problem.samples, problem.parameters, equations.lambda, problem.options.smooth.order};
+}
+
+/// Standard deviation of a sample of mean weight that a spline of such freedom leaves.
+double noise_of(const Spline& spline, const Problem& problem, double freedom) {
+    const std::vector<double> away =
+        parametric_deviations(spline, problem.samples, problem.parameters);
+    const std::vector<double>& weights = problem.samples.weights;
+    double squares = 0;
+    double total = 0;
+    for (std::size_t i = 0; i < away.size(); ++i) {
+        const double weight = weights.empty() ? 1 : weights[i];
+        squares += weight * away[i] * away[i];
+        total += weight;
+    }
+    const auto m = static_cast<double>(away.size());
+    return std::sqrt(squares / total * m / std::max(1.0, m - freedom));
+}
+
 Course answered(const Equations& equations, const Problem& problem, std::string_view method) {
     if (method != "direct") return iterated_from_start(equations, problem, method);
     if (problem.options.hold.preserve != Preserve::nothing)
         return solved_in_shape(equations, problem);
-    Course course{solve_direct(*equations.system, equations.held), {}};
+    Course course{solve_direct(*equations.system, sample_rows(equations, problem), equations.held),
+                  {}};
     course.report.gradient_norm = frobenius_norm(equations.system->gradient(course.control));
     return course;
 }
@@ -128,25 +173,39 @@ Course answered(const Equations& equations, const Problem& problem, std::string_
 
 Fitted fit_least_squares(const Problem& problem, std::string_view method) {
     Stopwatch watch;
-    const Equations equations = assembled(problem, method);
+    Equations equations = assembled(problem, method);
     problem.stop_if_cancelled();
     const double assemble_seconds = watch.lap();
-    const Smoothing smoothing = problem.options.smooth.wanted
-                                    ? add_smoothing(*equations.system, problem.options.smooth)
-                                    : Smoothing{};
+    const Smoothing smoothing = smoothing_of(*equations.system, problem);
+    if (const auto fewer = fewer_control_points(problem, smoothing.axis_freedom)) {
+        Problem smaller = problem;
+        smaller.axes.control_points = *fewer;
+        smaller.options.shape.control_points = *fewer;
+        Fitted fitted = fit_least_squares(smaller, method);
+        fitted.report.seconds[1].second += assemble_seconds + watch.lap();
+        return fitted;
+    }
+    const auto samples = smoothing.lambda > 0 ? equations.system->clone() : nullptr;
+    if (samples) equations.system->add_roughness(smoothing.lambda, problem.options.smooth.order);
+    equations.lambda = smoothing.lambda;
     const double smoothing_seconds = watch.lap();
     Course course = answered(equations, problem, method);
     FitReport& report = course.report;
     report.method = method;
     report.smoothing = smoothing.lambda;
-    report.freedom = smoothing.freedom;
-    report.noise_level = smoothing.noise;
     report.seconds = {{"assemble", assemble_seconds}, {"solve", watch.lap()}};
     if (problem.options.smooth.wanted)
         report.seconds.insert(report.seconds.begin() + 1, {"smoothing", smoothing_seconds});
-    return {
-        Spline::from_free(equations.axes, uncentred(course.control, equations.system->centre())),
-        problem.parameters, std::move(report)};
+    Spline spline =
+        Spline::from_free(equations.axes, uncentred(course.control, equations.system->centre()));
+    if (smoothing.lambda > 0 && problem.options.smooth.lambda == 0) {
+        report.freedom =
+            smoothing.freedom - freedom_held(*samples, *equations.system,
+                                             sample_rows(equations, problem), equations.held);
+        report.noise_level =
+            equations.held.empty() ? smoothing.noise : noise_of(spline, problem, report.freedom);
+    }
+    return {std::move(spline), problem.parameters, std::move(report)};
 }
 
 } // namespace batten

@@ -58,6 +58,15 @@ KnotPlacement placement_of(const FitOptions& options) {
     return options.method.name == "auto" ? KnotPlacement::both_ends : KnotPlacement::data;
 }
 
+/// The parameters that differ, by more than a small part of their range.
+std::vector<double> distinct(const std::vector<double>& parameters) {
+    const double apart = 1e-9 * (parameters.back() - parameters.front());
+    std::vector<double> result;
+    for (double t : parameters)
+        if (result.empty() || t - result.back() > apart) result.push_back(t);
+    return result;
+}
+
 /// Closed knots whose seam has the multiplicity that its continuity takes.
 KnotVector with_seam(const KnotVector& knots, int copies) {
     if (copies == 0) return knots;
@@ -84,10 +93,17 @@ KnotVector axis_knots(const Problem& problem, std::size_t axis) {
                         "control points, got {}",
                         degree, shape.seam_continuity, degree + 1 + copies, n + copies));
     const KnotPlacement rule = placement_of(problem.options);
+    const bool even = rule == KnotPlacement::uniform || problem.kind == SampleKind::cloud;
+    // what is smooth needs no knots between samples that repeat
+    const std::vector<double> places = even ? std::vector<double>()
+                                       : problem.options.smooth.wanted
+                                           ? distinct(problem.parameters.axes[axis])
+                                           : problem.parameters.axes[axis];
+    const bool fewer = problem.options.smooth.wanted && static_cast<Index>(places.size()) < n;
     const KnotVector knots =
-        rule == KnotPlacement::uniform || problem.kind == SampleKind::cloud
+        even || fewer
             ? uniform_knots(degree, n, closed ? 0 : extent.begin, closed ? 1 : extent.end, closure)
-            : knots_from_parameters(problem.parameters.axes[axis], degree, n, closure, rule);
+            : knots_from_parameters(places, degree, n, closure, rule);
     return with_seam(knots, copies);
 }
 
@@ -129,12 +145,23 @@ std::vector<KnotVector> fixed_knots(const Problem& problem) {
 
 std::vector<Index> smoothing_size(const Problem& problem) {
     const std::size_t axes = problem.axes.count();
-    const Index most = axes == 1 ? 200 : axes == 2 ? 60 : 20;
     std::vector<Index> result;
-    for (std::size_t k = 0; k < axes; ++k)
-        result.push_back(std::clamp(static_cast<Index>(samples_along(problem, k) / 2),
-                                    Index{2 * problem.axes.degree[k] + 1}, most));
+    for (std::size_t k = 0; k < axes; ++k) {
+        const bool cloud = problem.parameters.is_scattered();
+        const Index places = cloud
+                                 ? static_cast<Index>(samples_along(problem, k))
+                                 : static_cast<Index>(distinct(problem.parameters.axes[k]).size());
+        const Index few = std::min<Index>(places, 2 * problem.axes.degree[k] + 1);
+        const Index wanted = std::min(std::max(places / 2, few), most_smoothing_size(problem));
+        result.push_back(std::max<Index>(wanted, problem.axes.degree[k] + 1));
+    }
     return result;
+}
+
+Index most_smoothing_size(const Problem& problem) {
+    const std::size_t axes = problem.axes.count();
+    if (problem.parameters.is_scattered()) return axes == 2 ? 60 : 20;
+    return axes == 1 ? 2000 : axes == 2 ? 200 : 40;
 }
 
 double samples_along(const Problem& problem, std::size_t axis) {

@@ -13,8 +13,9 @@ AxisPlan plan_axes(const ShapeOptions& options, Index axes);
 std::vector<KnotVector> fixed_knots(const Problem& problem);
 
 /// Control points per axis when smoothing rules the detail and their number does not: enough to
-/// follow the samples.
+/// follow the samples, half as many as differ along the axis, at most as many as below.
 std::vector<Index> smoothing_size(const Problem& problem);
+Index most_smoothing_size(const Problem& problem);
 
 /// Samples along an axis: of the grid, or evenly so many of a sequence or cloud.
 double samples_along(const Problem& problem, std::size_t axis);

@@ -139,6 +139,17 @@ Parameters chosen_parameters(const Problem& problem) {
                                      problem.options.hold.boundaries);
 }
 
+/// Says where a smooth spline may lack control points that the samples would bear.
+void note_limit(Problem& problem) {
+    const Index most = most_smoothing_size(problem);
+    for (std::size_t k = 0; k < problem.axes.count(); ++k)
+        if (problem.axes.control_points[k] == most && samples_along(problem, k) > 2 * (most + 1))
+            problem.samples.notes.push_back(fmt::format(
+                "axis {}: the smooth spline was sought with {} control points, fewer than half of "
+                "the samples; state more where its detail is finer",
+                k, most));
+}
+
 /// Without a size and a tolerance: with smoothing enough control points, else within a thousandth
 /// of the data's size, where the method is left open.
 void complete_size(Problem& problem) {
@@ -148,6 +159,7 @@ void complete_size(Problem& problem) {
     if (problem.sized() || options.tolerance.stated()) return;
     if (options.smooth.wanted) {
         problem.axes.control_points = smoothing_size(problem);
+        note_limit(problem);
     } else if (open && options.stop.deviation > 0) {
         options.tolerance.value = std::exchange(options.stop.deviation, 0);
         if (options.stop.relative_gradient == 0)
@@ -188,8 +200,8 @@ Problem problem_of(const Samples& samples, const FitOptions& options) {
     check_smoothing(options.smooth, problem.axes);
     for (Index i : options.tolerance.corner_samples) check_sample("corner", i, samples.size());
     check_held(options.hold, problem.samples, problem.kind, problem.axes);
-    complete_size(problem);
     problem.parameters = chosen_parameters(problem);
+    complete_size(problem);
     if (problem.options.tolerance.stated())
         problem.tolerance = sample_tolerances(samples, problem.options.tolerance);
     return problem;

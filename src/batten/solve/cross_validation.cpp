@@ -1,138 +1,156 @@
 #include <batten/solve/cross_validation.hpp>
 
-#include <batten/solve/banded_cholesky.hpp>
-#include <batten/solve/factorization.hpp>
+#include <batten/solve/smoothing_quality.hpp>
 #include <batten/system/roughness.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <random>
+#include <map>
 
 namespace batten {
 
 namespace {
 
-/// Residual sum of squares and trace for one lambda.
-struct Quality {
-    double squares;
-    double trace;
-};
-
-double score(const Quality& q, double m) {
-    const double left = 1 - q.trace / m;
-    return left > 0 ? q.squares / m / (left * left) : std::numeric_limits<double>::infinity();
-}
-
-/// The residual from the normal equations, not below what rounding leaves of it.
-double residual(const NormalSystem& system, double product, const PointSet& control) {
-    return std::max(1e-15 * system.data_energy(),
-                    system.data_energy() - 2 * inner_product(control, system.rhs()) + product);
-}
-
-/// Trace of (G + lambda R)^{-1} G, column by column.
-double trace_of(const BandedMatrix& gram, const BandedCholesky& smoothed) {
-    const Index n = gram.size();
-    PointSet unit(n, n);
-    for (Index i = 0; i < n; ++i) unit(i, i) = 1;
-    PointSet columns(n, n);
-    gram.apply(unit.data(), columns.data(), {1, n});
-    smoothed.solve(columns.data(), {1, n});
+double trace(const BandedMatrix& matrix) {
     double sum = 0;
-    for (Index i = 0; i < n; ++i) sum += columns(i, i);
+    for (double x : matrix.diagonal()) sum += x;
     return sum;
 }
 
-Quality along_axes(const NormalSystem& system, const std::vector<BandedMatrix>& rough,
-                   double lambda) {
-    const auto grams = system.factors();
-    PointSet control = system.rhs();
-    double trace = 1;
-    for (std::size_t k = grams.size(); k-- > 0;) {
-        BandedMatrix sum = *grams[k];
-        sum.add(lambda * grams[k]->total(), rough[k]);
-        const BandedCholesky factor(sum);
-        factor.solve(control.data(), along(system.controls(), k, control.dim()));
-        trace *= trace_of(*grams[k], factor);
+/// Sum of the samples' weights: B-splines sum to one.
+double total_weight(const NormalSystem& system) {
+    PointSet ones(system.size(), 1);
+    ones.fill(1);
+    PointSet image(system.size(), 1);
+    system.apply(ones, image);
+    double sum = 0;
+    for (double x : image.values()) sum += x;
+    return sum;
+}
+
+/// The factor that makes the traces of the roughness and of the normal equations alike: between the
+/// extremes, and exact in every unit of the parameters that is a power of two.
+double balancing_factor(const NormalSystem& system, int order) {
+    double rough = 0;
+    for (std::size_t k = 0; k < system.axes().size(); ++k) {
+        double product = 1;
+        for (std::size_t l = 0; l < system.axes().size(); ++l)
+            product *= trace(roughness_matrix(system.axes()[l], l == k ? order : 0));
+        rough = std::max(rough, product);
     }
-    PointSet image(control.size(), control.dim());
-    system.apply(control, image);
-    return {residual(system, inner_product(control, image), control), trace};
+    double sum = 0;
+    for (double x : system.diagonal()) sum += x;
+    return sum / total_weight(system) / rough;
 }
 
-/// Random signs, the same in every run.
-PointSet probes(Index rows) {
-    constexpr Index count = 8;
-    PointSet result(rows, count);
-    std::mt19937_64 random(1);
-    for (double& x : result.values()) x = random() % 2 == 0 ? -1 : 1;
-    return result;
-}
+/// V of factors that are so many doublings from the balancing one; each is judged once.
+class Search {
+  public:
+    Search(const NormalSystem& system, const Samples& samples, const Parameters& parameters,
+           int order)
+        : quality_(smoothing_quality(system, samples, parameters, order)),
+          balance_(balancing_factor(system, order)),
+          m_(static_cast<double>(system.sample_count())),
+          size_(static_cast<double>(system.size())) {
+        for (const KnotVector& axis : system.axes()) polynomials_ *= axis.closed() ? 1 : order;
+    }
 
-Quality as_a_whole(const NormalSystem& system, double lambda, int order) {
-    const auto smoothed = system.clone();
-    smoothed->add_roughness(lambda, order);
-    const auto factor = factorize(*smoothed);
-    const PointSet control = factor->solve(system.rhs());
-    PointSet image(control.size(), control.dim());
-    system.apply(control, image);
-    const PointSet z = probes(system.size());
-    PointSet gram_z(z.size(), z.dim());
-    system.apply(z, gram_z);
-    return {residual(system, inner_product(control, image), control),
-            inner_product(z, factor->solve(gram_z)) / static_cast<double>(z.dim())};
-}
+    double factor(double doublings) const { return balance_ * std::exp2(doublings); }
 
-/// The least of `value` over [low, high]: a scan, then golden sections around its best.
-double least(const std::function<double(double)>& value, double low, double high, int scan,
-             int sections) {
-    const double step = (high - low) / scan;
-    double best = low;
-    double best_value = std::numeric_limits<double>::infinity();
-    for (int k = 0; k <= scan; ++k) {
-        const double v = value(low + k * step);
-        if (v < best_value) {
-            best_value = v;
-            best = low + k * step;
+    Quality quality(double doublings) {
+        if (const auto found = seen_.find(doublings); found != seen_.end()) return found->second;
+        Quality result{std::numeric_limits<double>::infinity(), size_, {}};
+        try {
+            result = (*quality_)(factor(doublings));
+        } catch (const SolverError&) { // too little to hold every control point, or too much
         }
+        return seen_[doublings] = result;
     }
-    const double golden = (std::sqrt(5.0) - 1) / 2;
-    double a = best - step;
-    double b = best + step;
-    for (int k = 0; k < sections; ++k) {
-        const double x = b - golden * (b - a);
-        const double y = a + golden * (b - a);
-        (value(x) <= value(y) ? b : a) = value(x) <= value(y) ? y : x;
+
+    double score(double doublings) {
+        const Quality q = quality(doublings);
+        const double left = 1 - q.trace / m_;
+        return left > 0 ? q.squares / m_ / (left * left) : std::numeric_limits<double>::infinity();
     }
-    const double middle = (a + b) / 2;
-    return value(middle) <= best_value ? middle : best;
+
+    /// The best of steps to both sides, until all freedom is there or none but the polynomials'.
+    double scanned() {
+        constexpr int most_steps = 64;
+        double best = 0;
+        const auto see = [&](double doublings) {
+            if (score(doublings) < score(best)) best = doublings;
+        };
+        const double all = size_ * (1 - (quality_->estimated() ? 0.01 : 1e-4));
+        const double none = polynomials_ + (quality_->estimated() ? 2 : 1e-3);
+        for (int k = 1; k <= most_steps && quality(-step() * (k - 1)).trace < all; ++k)
+            see(-step() * k);
+        for (int k = 1; k <= most_steps && quality(step() * (k - 1)).trace > none; ++k)
+            see(step() * k);
+        return best;
+    }
+
+    /// Near the best of a scan, where V is level: alike to both sides, found by the Illinois
+    /// variant of false position.
+    double levelled(double best) {
+        const auto slope = [&](double x) { return score(x + 0.5) - score(x - 0.5); };
+        const int most_rounds = quality_->estimated() ? 4 : 40;
+        double low = best - step();
+        double high = best + step();
+        double at_low = slope(low);
+        double at_high = slope(high);
+        if (!(at_low < 0) || !(at_high > 0) || !std::isfinite(at_low) || !std::isfinite(at_high))
+            return best;
+        double middle = best;
+        int same_side = 0; // of the level place, so many times: below it negative
+        for (int round = 0; round < most_rounds; ++round) {
+            const double next = (low * at_high - high * at_low) / (at_high - at_low);
+            if (next == middle || !(next > low && next < high)) break;
+            middle = next;
+            const double at = slope(middle);
+            if (at == 0) break;
+            same_side = at < 0 ? std::min(same_side, 0) - 1 : std::max(same_side, 0) + 1;
+            (at < 0 ? low : high) = middle;
+            (at < 0 ? at_low : at_high) = at;
+            if (same_side < -1) at_high /= 2;
+            if (same_side > 1) at_low /= 2;
+        }
+        return score(middle) <= score(best) ? middle : best;
+    }
+
+  private:
+    double step() const { return quality_->estimated() ? 4 : 2; }
+
+    std::unique_ptr<SmoothingQuality> quality_;
+    double balance_;
+    double m_;
+    double size_;
+    double polynomials_ = 1; ///< that no roughness sees
+    std::map<double, Quality> seen_;
+};
+
+Smoothing judged(const NormalSystem& system, double lambda, const Quality& quality) {
+    const auto m = static_cast<double>(system.sample_count());
+    const double mean_square = quality.squares / total_weight(system);
+    return {lambda, quality.trace, quality.axis_traces,
+            std::sqrt(mean_square * m / std::max(1.0, m - quality.trace))};
 }
 
 } // namespace
 
-Smoothing cross_validated(const NormalSystem& system, int order) {
-    const bool factored = !system.factors().empty();
-    std::vector<BandedMatrix> rough;
-    for (const KnotVector& axis : system.axes()) rough.push_back(roughness_matrix(axis, order));
-    const auto m = static_cast<double>(system.sample_count());
-    const auto quality = [&](double exponent) -> Quality {
-        const double lambda = std::pow(10, exponent);
-        try {
-            return factored ? along_axes(system, rough, lambda) : as_a_whole(system, lambda, order);
-        } catch (const SolverError&) { // too little to hold every control point
-            return {std::numeric_limits<double>::infinity(), 0};
-        }
-    };
-    // of parameters over [0, 1] a derivative's square is at most about the samples' number to the
-    // power of twice its order: below 1e-16 of the mean square nothing is left of it
-    const double best = least([&](double exponent) { return score(quality(exponent), m); }, -16, 2,
-                              factored ? 36 : 12, factored ? 16 : 6);
-    const Quality chosen = quality(best);
+Smoothing cross_validated(const NormalSystem& system, const Samples& samples,
+                          const Parameters& parameters, int order) {
+    Search search(system, samples, parameters, order);
+    const double best = search.levelled(search.scanned());
+    const Quality chosen = search.quality(best);
     if (!std::isfinite(chosen.squares))
         throw SolverError("no smoothing makes the samples determine every control point");
-    return {std::pow(10, best), chosen.trace,
-            std::sqrt(chosen.squares / std::max(1.0, m - chosen.trace))};
+    return judged(system, search.factor(best), chosen);
+}
+
+Smoothing smoothed_by(double lambda, const NormalSystem& system, const Samples& samples,
+                      const Parameters& parameters, int order) {
+    return judged(system, lambda, (*smoothing_quality(system, samples, parameters, order))(lambda));
 }
 
 } // namespace batten

@@ -1,10 +1,13 @@
 #include <batten/solve/direct.hpp>
 
 #include <batten/core/vectors.hpp>
+#include <batten/solve/condition.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/solve/schur.hpp>
 
 #include <Eigen/Dense>
+#include <cmath>
+#include <limits>
 
 namespace batten {
 
@@ -67,19 +70,72 @@ std::vector<double> best_lengths(const Constraints& constraints, const PointSet&
     return {lengths.begin(), lengths.end()};
 }
 
-} // namespace
-
-PointSet solve_direct(const NormalSystem& system, const Constraints& given) {
-    if (given.empty()) return solve_direct(system);
-    const Constraints independent = given.independent(system.size());
-    const auto normal = factorize(system);
-    const SchurComplement schur(*normal, independent, system.size());
-    PointSet control = normal->solve(system.rhs());
+/// Control points of the unconstrained minimum, moved to that under independent constraints.
+PointSet constrained(PointSet control, const Factorization& normal,
+                     const Constraints& independent) {
+    if (independent.empty()) return control;
+    const SchurComplement schur(normal, independent, control.size());
     const Constraints constraints =
         independent.directions().empty()
             ? independent
             : independent.with_lengths(best_lengths(independent, control, schur));
-    return onto_constraints(std::move(control), constraints, *normal, schur);
+    return onto_constraints(std::move(control), constraints, normal, schur);
+}
+
+/// Factors of the normal equations where these keep half of a number's digits, else of the rows.
+struct Solver {
+    std::unique_ptr<Factorization> normal;
+    std::unique_ptr<RowFactorization> rows;
+
+    Solver(const NormalSystem& system, const SampleRows& of) {
+        const double most = 1 / std::sqrt(std::numeric_limits<double>::epsilon());
+        const bool has_rows = !system.factors().empty();
+        try {
+            normal = factorize(system);
+            if (!has_rows || inverse_norm(system, *normal) <= most) return;
+        } catch (const SolverError&) {
+            if (!has_rows) throw;
+        }
+        rows = std::make_unique<RowFactorization>(system.axes(), of, system.centre());
+    }
+    const Factorization& factors() const { return rows ? *rows : *normal; }
+    PointSet solution(const NormalSystem& system) const {
+        return rows ? rows->solution() : normal->solve(system.rhs());
+    }
+};
+
+} // namespace
+
+PointSet solve_direct(const NormalSystem& system, const Constraints& given) {
+    const Constraints independent = given.empty() ? given : given.independent(system.size());
+    const auto normal = factorize(system);
+    return constrained(normal->solve(system.rhs()), *normal, independent);
+}
+
+PointSet solve_direct(const NormalSystem& system, const SampleRows& rows,
+                      const Constraints& given) {
+    const Constraints independent = given.empty() ? given : given.independent(system.size());
+    const Solver solver(system, rows);
+    return constrained(solver.solution(system), solver.factors(), independent);
+}
+
+double freedom_held(const NormalSystem& samples, const NormalSystem& smoothed,
+                    const SampleRows& rows, const Constraints& given) {
+    if (given.empty()) return 0;
+    const Constraints independent = given.independent(samples.size());
+    const Solver solver(smoothed, rows);
+    const SchurComplement schur(solver.factors(), independent, samples.size());
+    PointSet unit(independent.size(), independent.size());
+    for (Index i = 0; i < unit.size(); ++i) unit(i, i) = 1;
+    const PointSet pulls =
+        solver.factors().solve(independent.apply_transposed(unit, samples.size()));
+    PointSet images(pulls.size(), pulls.dim());
+    samples.apply(pulls, images);
+    const PointSet moved =
+        schur.solve(independent.apply(solver.factors().solve(std::move(images))));
+    double sum = 0;
+    for (Index i = 0; i < moved.size(); ++i) sum += moved(i, i);
+    return sum;
 }
 
 Constraints with_best_lengths(const NormalSystem& system, const Constraints& given) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <batten/solve/sample_rows.hpp>
 #include <batten/system/constraints.hpp>
 #include <batten/system/normal_system.hpp>
 
@@ -14,6 +15,17 @@ PointSet solve_direct(const NormalSystem& system);
 /// Directions get the lengths that leave the least error. Throws as above, and InvalidInput as
 /// Constraints::independent does.
 PointSet solve_direct(const NormalSystem& system, const Constraints& constraints);
+
+/// The same from the rows that a system with factors was made of where its normal equations cannot
+/// be solved to half of a number's digits.
+PointSet solve_direct(const NormalSystem& system, const SampleRows& rows,
+                      const Constraints& constraints);
+
+/// By how much constraints reduce the trace of the matrix that makes fitted values of the samples,
+/// for their system without roughness and with it: by trace (C S^{-1} C^T)^{-1} C S^{-1} G S^{-1}
+/// C^T. Free lengths count as held.
+double freedom_held(const NormalSystem& samples, const NormalSystem& smoothed,
+                    const SampleRows& rows, const Constraints& constraints);
 
 /// Independent constraints with their directions' lengths as the fit above chooses them.
 Constraints with_best_lengths(const NormalSystem& system, const Constraints& constraints);

@@ -3,6 +3,8 @@
 #include <batten/system/factored_system.hpp>
 #include <batten/system/stencil_system.hpp>
 
+#include <algorithm>
+
 namespace batten {
 
 namespace {
@@ -42,13 +44,16 @@ std::unique_ptr<NormalSystem> assemble(const std::vector<KnotVector>& axes, cons
                                        const Parameters& parameters) {
     const auto origin = samples.points[0];
     const std::vector<double> centre(origin.begin(), origin.end());
-    const bool weighted_grid = axes.size() > 1 && !samples.weights.empty();
+    const bool weighted_grid =
+        axes.size() > 1 && std::ranges::any_of(samples.weights, [](double w) { return w != 1; });
     if (parameters.is_scattered() || weighted_grid) {
         auto system = std::make_unique<StencilSystem>(axes, centre);
-        if (parameters.is_scattered())
+        if (parameters.is_scattered()) {
             system->add(samples.points, parameters.scattered, samples.weights);
-        else
+        } else {
+            system->set_grid(parameters);
             system->add(samples.points, parameter_rows(parameters), samples.weights);
+        }
         return system;
     }
     if (axes.size() == 1) {

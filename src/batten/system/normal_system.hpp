@@ -49,10 +49,13 @@ class NormalSystem {
     /// near A^T D A, to precondition with; empty where none are known.
     virtual std::vector<BandedMatrix> nearby_factors() const { return {}; }
 
-    /// Adds lambda times the roughness to what is minimised, the mean of the weighted squares: for
-    /// a sequence or cloud lambda times the integral of the squared derivatives of the given order
-    /// along each axis, so A^T D A gets lambda W R for the total weight W; for a grid each axis's
-    /// matrix its own [XiaoLiRuppert2013], so that the system stays a Kronecker product.
+    /// Adds lambda times the roughness to what is minimised, the mean of the weighted squares, so
+    /// that A^T D A gets lambda W R for the total weight W. Of a sequence or cloud it is the
+    /// integral of the squared derivatives of the given order along each axis. Of a grid it is the
+    /// sandwich smoother's [XiaoLiRuppert2013], a Kronecker product where the weights are one: for
+    /// every choice of axes lambda to the power of their number times the squared derivative along
+    /// all of them, integrated along them and averaged over the samples' parameters along the
+    /// others.
     virtual void add_roughness(double lambda, int order) = 0;
 
     /// The gradient A^T D (Q - A P) at control points relative to the centre.
@@ -78,7 +81,7 @@ class NormalSystem {
 };
 
 /// Assembles the normal system of the samples in one pass; the centre is the first sample.
-/// Sequences and unweighted grids give the Kronecker product of banded matrices, all else the
+/// Sequences and grids of unit weights give the Kronecker product of banded matrices, all else the
 /// stencil form. Throws InvalidInput when a parameter is outside the knots' domain.
 std::unique_ptr<NormalSystem> assemble(const std::vector<KnotVector>& axes, const Samples& samples,
                                        const Parameters& parameters);

@@ -33,18 +33,27 @@ std::vector<std::pair<double, double>> gauss_rule(int count) {
 
 } // namespace
 
-BandedMatrix roughness_matrix(const KnotVector& knots, int order) {
-    const int p = knots.degree();
-    BandedMatrix matrix(knots.free_count(), p, knots.closure());
-    const auto rule = gauss_rule(p + 1);
-    for (Index span = p; span < knots.control_count(); ++span) {
+void for_each_roughness_row(
+    const KnotVector& knots, int order, int nodes,
+    FunctionRef<void(double weight, const ActiveFunctions& derivatives)> visit) {
+    const auto rule = gauss_rule(nodes);
+    for (Index span = knots.degree(); span < knots.control_count(); ++span) {
         const double half = (knots[span + 1] - knots[span]) / 2;
         if (!(half > 0)) continue;
         const double middle = (knots[span + 1] + knots[span]) / 2;
         for (const auto& [x, weight] : rule)
-            matrix.add_outer(weight * half,
-                             active_functions(knots, middle + half * x, Numbering::free, order));
+            visit(weight * half,
+                  active_functions(knots, middle + half * x, Numbering::free, order));
     }
+}
+
+BandedMatrix roughness_matrix(const KnotVector& knots, int order) {
+    const int p = knots.degree();
+    BandedMatrix matrix(knots.free_count(), p, knots.closure());
+    for_each_roughness_row(knots, order, p + 1,
+                           [&](double weight, const ActiveFunctions& derivatives) {
+                               matrix.add_outer(weight, derivatives);
+                           });
     return matrix;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <batten/basis/basis_functions.hpp>
+#include <batten/basis/active_functions.hpp>
+#include <batten/core/function_ref.hpp>
 #include <batten/system/banded_matrix.hpp>
 
 namespace batten {
@@ -8,5 +9,12 @@ namespace batten {
 /// The integrals over the domain of products of the B-splines' derivatives of the given order (0:
 /// of the B-splines themselves), exact: P^T M P is the integral of |C^(order)|^2 of a curve.
 BandedMatrix roughness_matrix(const KnotVector& knots, int order);
+
+/// Calls `visit` for `nodes` Gauss-Legendre nodes of each span with the node's weight and the
+/// B-splines' derivatives of the given order there: the sum of weight b b^T is the matrix above
+/// from degree - order + 1 nodes on.
+void for_each_roughness_row(
+    const KnotVector& knots, int order, int nodes,
+    FunctionRef<void(double weight, const ActiveFunctions& derivatives)> visit);
 
 } // namespace batten

@@ -4,6 +4,7 @@
 #include <batten/system/roughness.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <fmt/format.h>
 
@@ -158,15 +159,34 @@ std::vector<BandedMatrix> StencilSystem::nearby_factors() const {
     return result;
 }
 
+void StencilSystem::set_grid(const Parameters& grid) {
+    for (std::size_t k = 0; k < axes_.size(); ++k) {
+        grid_means_.emplace_back(axes_[k].free_count(), axes_[k].degree(), axes_[k].closure());
+        for (double t : grid.axes[k])
+            grid_means_[k].add_outer(1, active_functions(axes_[k], t, Numbering::free));
+        grid_means_[k].divide(static_cast<double>(grid.axes[k].size()));
+    }
+}
+
 void StencilSystem::add_roughness(double lambda, int order) {
     const double weight = total_weight_ > 0 ? total_weight_ : 1;
-    for (std::size_t rough = 0; rough < axes_.size(); ++rough) {
+    std::vector<BandedMatrix> rough;
+    for (const KnotVector& axis : axes_) rough.push_back(roughness_matrix(axis, order));
+    // the axes that a term is rough along: of a grid any, of a cloud one
+    for (unsigned along = 1; along < 1U << axes_.size(); ++along) {
+        if (grid_means_.empty() && std::popcount(along) > 1) continue;
+        double factor = weight;
         std::vector<BandedMatrix> matrices;
-        for (std::size_t k = 0; k < axes_.size(); ++k)
-            matrices.push_back(roughness_matrix(axes_[k], k == rough ? order : 0));
-        add_product(lambda * weight, matrices);
-        axis_grams_[rough].add(lambda * weight, matrices[rough]);
+        for (std::size_t k = 0; k < axes_.size(); ++k) {
+            const bool is_rough = (along >> k & 1U) != 0;
+            if (is_rough) factor *= lambda;
+            matrices.push_back(is_rough              ? rough[k]
+                               : grid_means_.empty() ? roughness_matrix(axes_[k], 0)
+                                                     : grid_means_[k]);
+        }
+        add_product(factor, matrices);
     }
+    for (std::size_t k = 0; k < axes_.size(); ++k) axis_grams_[k].add(lambda * weight, rough[k]);
 }
 
 void StencilSystem::add_product(double factor, const std::vector<BandedMatrix>& matrices) {

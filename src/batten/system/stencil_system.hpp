@@ -15,6 +15,9 @@ class StencilSystem : public NormalSystem {
     /// Throws InvalidInput when a parameter is outside the knots' domain.
     void add(const Points& points, const Points& parameters, std::span<const double> weights);
 
+    /// Makes the samples those of a grid with these parameters, whose roughness is a grid's.
+    void set_grid(const Parameters& grid);
+
     std::unique_ptr<NormalSystem> clone() const override {
         return std::make_unique<StencilSystem>(*this);
     }
@@ -51,6 +54,7 @@ class StencilSystem : public NormalSystem {
         active_places_; // of a sample's active functions, the first of them at place 0
     bool any_closed_ = false;
     std::vector<BandedMatrix> axis_grams_;
+    std::vector<BandedMatrix> grid_means_; // of products of B-splines at a grid's parameters
     double total_weight_ = 0;
 };
 

@@ -1,0 +1,232 @@
+#include <batten/solve/banded_qr.hpp>
+
+#include <batten/core/core.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace batten {
+
+namespace {
+
+/// A rotation of two numbers that leaves nothing of the second.
+struct Rotation {
+    Extended cosine;
+    Extended sine;
+
+    Rotation(Extended kept, Extended gone) {
+        const Extended length = std::sqrt(kept * kept + gone * gone);
+        cosine = kept / length;
+        sine = gone / length;
+    }
+    void apply(Extended& a, Extended& b) const {
+        const Extended kept = cosine * a + sine * b;
+        b = cosine * b - sine * a;
+        a = kept;
+    }
+};
+
+} // namespace
+
+BandedQr::BandedQr(Index size, int degree, Closure closure, Index rhs_columns)
+    : size_(size),
+      border_(closure == Closure::closed ? degree : 0),
+      degree_(degree),
+      width_(degree + 1 + border_),
+      columns_(rhs_columns),
+      factor_(static_cast<std::size_t>(size * width_)),
+      rhs_(static_cast<std::size_t>(size * rhs_columns)),
+      column_squares_(static_cast<std::size_t>(size)) {}
+
+BandedRow BandedQr::row(const ActiveFunctions& active, Extended factor) const {
+    const Index inner = inner_size();
+    BandedRow result;
+    result.lead = lead(active.first);
+    for (int r = 0; r <= degree_; ++r) {
+        const Index column = active.index(r);
+        const Extended value = factor * Extended(active.value[static_cast<std::size_t>(r)]);
+        if (column < inner)
+            result.band[static_cast<std::size_t>(column - result.lead)] = value;
+        else
+            result.border[static_cast<std::size_t>(column - inner)] = value;
+    }
+    return result;
+}
+
+BandedRow BandedQr::row(Index i) const {
+    BandedRow result;
+    const Extended* from = entries(i);
+    result.lead = std::min(i, inner_size());
+    if (i < inner_size()) std::copy_n(from, degree_ + 1, result.band.begin());
+    std::copy_n(from + degree_ + 1, border_, result.border.begin());
+    return result;
+}
+
+void BandedQr::add(BandedRow row, Extended* rhs) {
+    const Index inner = inner_size();
+    auto& v = row.band;
+    for (Index k = 0; k <= degree_ && row.lead + k < inner; ++k) {
+        const Extended x = v[static_cast<std::size_t>(k)];
+        column_squares_[static_cast<std::size_t>(row.lead + k)] += x * x;
+    }
+    for (Index c = 0; c < border_; ++c) {
+        const Extended x = row.border[static_cast<std::size_t>(c)];
+        column_squares_[static_cast<std::size_t>(inner + c)] += x * x;
+    }
+    const auto rotate_rest = [&](const Rotation& turn, Index i, Index border_from) {
+        Extended* kept = entries(i) + degree_ + 1;
+        for (Index c = border_from; c < border_; ++c)
+            turn.apply(kept[c], row.border[static_cast<std::size_t>(c)]);
+        Extended* right = rhs_.data() + i * columns_;
+        for (Index d = 0; d < columns_; ++d) turn.apply(right[d], rhs[d]);
+    };
+    const Index end = std::min(row.lead + degree_ + 1, inner); // rows below are empty as yet
+    for (Index i = row.lead; i < end; ++i) {
+        if (v[0] != 0) {
+            Extended* kept = entries(i);
+            const Rotation turn(kept[0], v[0]);
+            for (Index k = 0; k <= degree_; ++k)
+                turn.apply(kept[k], v[static_cast<std::size_t>(k)]);
+            rotate_rest(turn, i, 0);
+        }
+        std::shift_left(v.begin(), v.begin() + degree_ + 1, 1);
+        v[static_cast<std::size_t>(degree_)] = 0;
+    }
+    for (Index c = 0; c < border_; ++c)
+        if (const Extended x = row.border[static_cast<std::size_t>(c)]; x != 0)
+            rotate_rest(Rotation(entries(inner + c)[degree_ + 1 + c], x), inner + c, c);
+    for (Index d = 0; d < columns_; ++d) left_over_ += rhs[d] * rhs[d];
+}
+
+void BandedQr::merge(const std::vector<BandedQr>& others) {
+    std::vector<Extended> right(static_cast<std::size_t>(columns_));
+    for (Index i = 0; i < size_; ++i)
+        for (const BandedQr& other : others) {
+            std::ranges::copy(other.rotated(i), right.begin());
+            add(other.row(i), right.data());
+        }
+    for (const BandedQr& other : others) left_over_ += other.left_over_;
+}
+
+void BandedQr::check() const {
+    constexpr Extended least = 1e-15L; // of the column: below it rounding made what is left
+    for (Index i = 0; i < size_; ++i) {
+        const Extended pivot = entries(i)[i < inner_size() ? 0 : degree_ + 1 + i - inner_size()];
+        if (!(std::abs(pivot) > least * std::sqrt(column_squares_[static_cast<std::size_t>(i)])))
+            throw SolverError(fmt::format("the least-squares problem is singular: control point {} "
+                                          "is not determined by the samples",
+                                          i));
+    }
+}
+
+template <class Visit>
+void BandedQr::visit_row(Index i, Visit visit) const {
+    const Extended* row = entries(i);
+    const Index inner = inner_size();
+    for (Index k = 0; k <= degree_ && i + k < inner; ++k) visit(i + k, row[k]);
+    for (Index c = std::max<Index>(0, i - inner); c < border_; ++c)
+        visit(inner + c, row[degree_ + 1 + c]);
+}
+
+void BandedQr::apply(Extended* x, AxisLayout layout) const {
+    const Index inner = layout.inner;
+    for_each_chunk(layout.outer, [&](Index o) {
+        Extended* at = x + o * size_ * inner;
+        for (Index i = 0; i < size_; ++i)
+            for (Index d = 0; d < inner; ++d) {
+                Extended sum = 0;
+                visit_row(i, [&](Index j, Extended value) { sum += value * at[j * inner + d]; });
+                at[i * inner + d] = sum;
+            }
+    });
+}
+
+void BandedQr::apply_transposed(Extended* x, AxisLayout layout) const {
+    const Index inner = layout.inner;
+    for_each_chunk(layout.outer, [&](Index o) {
+        Extended* at = x + o * size_ * inner;
+        for (Index i = size_; i-- > 0;)
+            for (Index d = 0; d < inner; ++d) {
+                const Extended from = at[i * inner + d];
+                at[i * inner + d] = 0;
+                visit_row(i, [&](Index j, Extended value) { at[j * inner + d] += value * from; });
+            }
+    });
+}
+
+void BandedQr::solve(Extended* x, AxisLayout layout) const {
+    const Index inner = layout.inner;
+    for_each_chunk(layout.outer, [&](Index o) {
+        Extended* at = x + o * size_ * inner;
+        for (Index i = size_; i-- > 0;)
+            for (Index d = 0; d < inner; ++d) {
+                Extended sum = at[i * inner + d];
+                Extended pivot = 1;
+                visit_row(i, [&](Index j, Extended value) {
+                    if (j == i)
+                        pivot = value;
+                    else
+                        sum -= value * at[j * inner + d];
+                });
+                at[i * inner + d] = sum / pivot;
+            }
+    });
+}
+
+void BandedQr::solve_transposed(Extended* x, AxisLayout layout) const {
+    const Index inner = layout.inner;
+    for_each_chunk(layout.outer, [&](Index o) {
+        Extended* at = x + o * size_ * inner;
+        for (Index i = 0; i < size_; ++i)
+            for (Index d = 0; d < inner; ++d) {
+                Extended from = 0;
+                visit_row(i, [&](Index j, Extended value) {
+                    if (j == i)
+                        from = at[i * inner + d] /= value;
+                    else
+                        at[j * inner + d] -= value * from;
+                });
+            }
+    });
+}
+
+double BandedQr::squares_of(const BandedQr& rows) const {
+    constexpr Index together = 8;
+    const std::vector<double> factor(factor_.begin(), factor_.end());
+    const Index inner = inner_size();
+    std::vector<double> sums(static_cast<std::size_t>(block_count(size_, together)));
+    for_each_block(size_, together, [&](const Block& block) {
+        // y R = row, forwards; entries of the rows that are taken together lie side by side
+        const Index first = std::min(block.begin, inner);
+        std::vector<std::array<double, together>> y(static_cast<std::size_t>(size_ - first));
+        for (Index i = block.begin; i < block.end; ++i)
+            rows.visit_row(i, [&](Index j, Extended value) {
+                y[static_cast<std::size_t>(j - first)][static_cast<std::size_t>(i - block.begin)] =
+                    static_cast<double>(value);
+            });
+        std::array<double, together> squares{};
+        for (Index i = first; i < size_; ++i) {
+            auto& from = y[static_cast<std::size_t>(i - first)];
+            const double* row = factor.data() + i * width_;
+            const double pivot = row[i < inner ? 0 : degree_ + 1 + i - inner];
+            for (std::size_t s = 0; s < together; ++s) {
+                from[s] /= pivot;
+                squares[s] += from[s] * from[s];
+            }
+            const auto take = [&](Index j, double value) {
+                auto& to = y[static_cast<std::size_t>(j - first)];
+                for (std::size_t s = 0; s < together; ++s) to[s] -= value * from[s];
+            };
+            for (Index k = 1; k <= degree_ && i + k < inner; ++k) take(i + k, row[k]);
+            for (Index c = std::max<Index>(0, i - inner + 1); c < border_; ++c)
+                take(inner + c, row[degree_ + 1 + c]);
+        }
+        for (double x : squares) sums[static_cast<std::size_t>(block.index)] += x;
+    });
+    double sum = 0;
+    for (double x : sums) sum += x;
+    return sum;
+}
+
+} // namespace batten
