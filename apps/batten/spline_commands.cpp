@@ -188,6 +188,7 @@ void convert(const std::vector<std::string>& paths, const std::vector<std::strin
     OutputSet set;
     for (const std::string& output : outputs) set.add(output, spline_content(output, scene));
     set.put_in_place();
+    print_notes(outputs, scene);
 }
 
 } // namespace
