@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <memory>
+#include <utility>
 
 namespace batten::command {
 
@@ -55,20 +56,21 @@ void convert(const Flags& flags, const CLI::App& app) {
     std::vector<Spline> splines;
     for (const std::string& path : flags.splines)
         for (Spline& spline : read_all({path, flags.entity})) splines.push_back(std::move(spline));
-    std::vector<FileUse> files;
-    OutputSet set;
+    std::vector<std::pair<std::string, Scene>> files;
     for (const std::string& output : flags.outputs) {
-        const std::vector<std::string> names = names_of(output, splines.size());
         const bool apart = output.find(number_mark) != std::string::npos;
-        for (std::size_t k = 0; k < names.size(); ++k) {
-            files.push_back({names[k], "--output"});
-            const Scene scene = apart ? scene_of(splines, k, 1, flags)
-                                      : scene_of(splines, 0, splines.size(), flags);
-            set.add(names[k], spline_content(names[k], scene));
-        }
+        const std::vector<std::string> names = names_of(output, splines.size());
+        for (std::size_t k = 0; k < names.size(); ++k)
+            files.emplace_back(names[k], apart ? scene_of(splines, k, 1, flags)
+                                               : scene_of(splines, 0, splines.size(), flags));
     }
-    check_outputs(files, inputs);
+    written.clear();
+    for (const auto& [name, scene] : files) written.push_back({name, "--output"});
+    check_outputs(written, inputs);
+    OutputSet set;
+    for (const auto& [name, scene] : files) set.add(name, spline_content(name, scene));
     set.put_in_place();
+    for (const auto& [name, scene] : files) print_notes({name}, scene);
 }
 
 } // namespace

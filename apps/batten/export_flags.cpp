@@ -2,6 +2,7 @@
 #include "parse.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <fmt/format.h>
 
 namespace batten::command {
@@ -71,6 +72,12 @@ void apply(const ExportFlags& flags, Scene& scene) {
     scene.unit = flags.unit;
     scene.chord_tolerance = flags.chord_tolerance;
     scene.date = flags.date;
+}
+
+void print_notes(const std::vector<std::string>& outputs, const Scene& scene) {
+    for (const std::string& output : outputs)
+        if (const std::string note = spline_note(output, scene); !note.empty())
+            std::fputs(fmt::format("batten: {}: {}\n", output, note).c_str(), stderr);
 }
 
 } // namespace batten::command

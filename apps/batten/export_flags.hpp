@@ -25,4 +25,7 @@ void check(const ExportFlags& flags, const CLI::App& app, const std::vector<std:
 /// Enters the flags in what is written.
 void apply(const ExportFlags& flags, Scene& scene);
 
+/// Says on standard error, a line a file, what the files lose of the scene.
+void print_notes(const std::vector<std::string>& outputs, const Scene& scene);
+
 } // namespace batten::command

@@ -60,7 +60,8 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     Scene scene{.spline = result.spline,
                 .samples = &samples,
                 .title = title_of(flags.points),
-                .deviations = &result.deviations};
+                .deviations = &result.deviations,
+                .parameters = &result.parameters};
     apply(flags.exported, scene);
     OutputSet outputs;
     for (const std::string& output : flags.outputs) {
@@ -75,8 +76,10 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     }
     if (!flags.summary.empty()) outputs.add(flags.summary, result.report.to_json());
     outputs.put_in_place();
-    if (!flags.quiet)
+    if (!flags.quiet) {
+        print_notes(flags.outputs, scene);
         std::fputs(result.report.full().c_str(), writes_standard_output(flags) ? stderr : stdout);
+    }
     if (!result.report.goals_met()) throw GoalMissed{};
 }
 

@@ -13,7 +13,8 @@ void add_shape_flags(CLI::App& fit, FitFlags& flags) {
                    "Every sample within this distance, with as few control points as it takes")
         ->check(positive())
         ->group("Size");
-    fit.add_option("--tolerances", flags.tolerances, "File of one tolerance per sample; beside --tolerance the smaller holds")
+    fit.add_option("--tolerances", flags.tolerances,
+                   "File of one tolerance per sample; beside --tolerance the smaller holds")
         ->group("Size");
     fit.add_option("--max-control-points", flags.max_control_points,
                    "Not more than these for a tolerance")

@@ -57,7 +57,8 @@ std::vector<SplineFormat>& registry() {
          stl_binary,
          {},
          true,
-         SceneDetail::chord_tolerance},
+         SceneDetail::chord_tolerance,
+         stl_note},
         {".vts",
          "VTK structured grid: the spline sampled",
          vts_text,
@@ -283,6 +284,11 @@ std::string spline_content(const std::filesystem::path& path, const Scene& scene
                                        format.extension, scene.more.size() + 1));
     check_scene(scene);
     return format.write(scene);
+}
+
+std::string spline_note(const std::filesystem::path& path, const Scene& scene) {
+    const SplineFormat& format = spline_format(path);
+    return format.note ? format.note(scene) : std::string();
 }
 
 void write_spline(const std::filesystem::path& path, const Scene& scene) {

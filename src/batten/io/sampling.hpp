@@ -2,16 +2,40 @@
 
 #include <batten/spline/spline.hpp>
 
+#include <span>
 #include <vector>
 
 namespace batten {
 
-/// Parameters per axis, breakpoints among them, so dense that between neighbouring ones a curve is
-/// within `chord` of its chord and a surface or volume of its cells' flat faces. At most about 10^7
-/// points in all; throws InvalidInput when these do not suffice or `chord` is not positive.
-std::vector<std::vector<double>> sampling(const Spline& spline, double chord);
+/// Parameters per axis, breakpoints among them.
+using AxisPlaces = std::vector<std::vector<double>>;
 
-/// A thousandth of the control points' diagonal: the chord that pictures are drawn to.
+/// Parameters so dense that flat pieces between the points there are within `chord`: a curve's
+/// chords, both triangles of a surface's cells by either diagonal, all that a volume's cells hold.
+/// A surface that is closed, or ends in points, gets cells enough to enclose what it encloses; a
+/// spline that is one point gets one. At most 10^7 points; throws InvalidInput when these do not
+/// suffice, or the coordinates' double precision does not, or `chord` is not positive.
+AxisPlaces sampling(const Spline& spline, double chord);
+
+/// Parameters so dense that this holds for the six faces of a volume.
+AxisPlaces skin_sampling(const Spline& volume, double chord);
+
+/// Whether the spline's two ends along the axis are one: a closed axis, or ends that coincide. The
+/// graph of a function has two ends everywhere.
+bool meets_itself(const Spline& spline, Index axis);
+
+/// How far coordinates may be apart that are one but for rounding: 10^-12 of the size.
+double same_point_distance(const Spline& spline);
+
+/// Whether no coordinate differs by more than `apart`.
+bool is_same_point(std::span<const double> a, std::span<const double> b, double apart);
+
+/// How far a point may be moved when its coordinates are rounded to numbers of that relative
+/// precision.
+double rounding(const Spline& spline, double epsilon);
+
+/// The chord that is kept where none is stated: a thousandth of the control points' diagonal, or
+/// what rounding leaves of it.
 double picture_chord(const Spline& spline);
 
 } // namespace batten

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <batten/parametrize/parametrize.hpp>
 #include <batten/samples/samples.hpp>
 #include <batten/spline/spline.hpp>
 
@@ -22,6 +23,8 @@ struct Scene {
     bool curvature_comb = false;
     /// Distance of each sample from the spline; null where not known.
     const std::vector<double>* deviations = nullptr;
+    /// The samples' parameters: where the samples of a function are drawn.
+    const Parameters* parameters = nullptr;
     /// Further splines, for formats that hold several.
     std::vector<const Spline*> more{};
     /// How far sampled formats may be from the spline; 0: a thousandth of its size.
@@ -60,6 +63,8 @@ struct SplineFormat {
     /// Whether a file may hold several splines.
     bool several = false;
     SceneDetail shows = SceneDetail::none;
+    /// One sentence on what the file loses of the scene, empty where nothing is to be said.
+    std::function<std::string(const Scene&)> note{};
 };
 
 /// The formats known now, in order of registration.
@@ -93,6 +98,9 @@ bool is_spline_file(const std::filesystem::path& path);
 /// Throws InvalidInput for what the format cannot hold: several splines, dimensions, numbers that
 /// are not finite, an unknown unit.
 std::string spline_content(const std::filesystem::path& path, const Scene& scene);
+
+/// One sentence on what that file loses of the scene; empty where nothing is to be said.
+std::string spline_note(const std::filesystem::path& path, const Scene& scene);
 
 /// Writes spline_content. Throws FileError; an existing file is replaced only by a complete one.
 void write_spline(const std::filesystem::path& path, const Scene& scene);

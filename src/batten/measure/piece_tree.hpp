@@ -1,6 +1,6 @@
 #pragma once
 
-#include <batten/measure/bezier_pieces.hpp>
+#include <batten/spline/bezier_pieces.hpp>
 
 namespace batten {
 

@@ -1,4 +1,4 @@
-#include <batten/measure/bezier_pieces.hpp>
+#include <batten/spline/bezier_pieces.hpp>
 
 #include <algorithm>
 #include <cmath>

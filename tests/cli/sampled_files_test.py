@@ -1,0 +1,344 @@
+"""Sampled files keep the chord tolerance both ways, and what encloses something is closed: judged by SciPy's B-splines over generated splines."""
+import json
+import os
+import struct
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+from scipy.interpolate import BSpline
+
+from judge import InFolder, evaluate, places, some
+
+SEED, CASES = int(os.environ.get("SEED", 7)), int(os.environ.get("CASES", 42))
+FLOAT = 2.0 ** -24  # relative rounding of single precision
+
+
+def knots_of(rng, degree, spans, kind):
+    """Knots of so many spans; `uneven` ones differ by up to 10^6."""
+    length = 10 ** rng.uniform(-6, 0, spans) if "uneven" in kind else np.ones(spans)
+    breaks = np.concatenate([[0], np.cumsum(length)]) / length.sum()
+    if "closed" not in kind:
+        return np.concatenate([np.zeros(degree), breaks, np.ones(degree)])
+    around = np.concatenate([breaks[:-1] + turn for turn in range(-degree, degree + 2)])  # any number of periods of spans
+    first = int(np.searchsorted(around, 0)) - degree
+    return around[first:first + spans + 2 * degree + 1]
+
+
+def make(rng, axes, dim, kinds, poles=False, mirrored=False):
+    """A spline of the given kinds of axes, of a size near 1: closed ones go around, poles end the second axis in points."""
+    degree = [int(rng.integers(1, 8)) for _ in range(axes)]
+    if poles and degree[1] < 2:
+        degree[1] = 2
+    spans = [int(max(p + 1 if "closed" in kind else 1, rng.integers(1, 6))) for p, kind in zip(degree, kinds)]
+    if "closed" in kinds[0] and degree[0] == 1:
+        spans[0] = max(spans[0], 3)
+    knots = [knots_of(rng, p, n, kind) for p, n, kind in zip(degree, spans, kinds)]
+    free = [len(k) - p - 1 - (p if "closed" in kind else 0) for k, p, kind in zip(knots, degree, kinds)]
+    g = np.meshgrid(*[np.arange(n) / (n if "closed" in kind else n - 1) for n, kind in zip(free, kinds)], indexing="ij")
+    u, v, w = (g + [np.zeros(g[0].shape)] * 2)[:3]
+    if axes == 1:
+        turn = 2 * np.pi * u
+        points = np.stack([np.cos(turn), np.sin(turn), u], axis=-1)[..., :dim] if "closed" in kinds[0] else np.stack([u, 0 * u, 0 * u], axis=-1)[..., :dim]
+    elif "closed" not in kinds[0]:
+        points = np.stack([u, v, w], axis=-1)
+    else:
+        turn, r = 2 * np.pi * u, 0.3 * (1 + 0.5 * w)
+        if "closed" in kinds[1]:
+            points = np.stack([(1 + r * np.cos(2 * np.pi * v)) * np.cos(turn), (1 + r * np.cos(2 * np.pi * v)) * np.sin(turn), r * np.sin(2 * np.pi * v)], axis=-1)
+        else:
+            width = r * (np.sin(np.pi * v) if poles else 1)
+            height = -r * np.cos(np.pi * v) if poles and axes == 3 else v
+            points = np.stack([width * np.cos(turn), width * np.sin(turn), height], axis=-1)
+    wild = 0.02 if axes == 3 else 0.08
+    moved = rng.normal(0, wild, points.shape)
+    if poles:
+        moved[:, 0] = moved[0, 0]
+        moved[:, -1] = moved[0, -1]
+    points = points + moved
+    if mirrored:
+        points[..., 0] *= -1
+    for axis, (p, kind) in enumerate(zip(degree, kinds)):
+        if "closed" in kind:
+            points = np.concatenate([points, np.take(points, range(p), axis=axis)], axis=axis)
+    return {"format": "batten-spline", "version": 1, "degree": degree, "closed": ["closed" in kind for kind in kinds], "knots": [k.tolist() for k in knots],
+            "control_shape": list(points.shape[:-1]), "control_points": points.reshape(-1, points.shape[-1]).tolist()}
+
+
+def placed(spline, size, offset):
+    spline["control_points"] = (size * np.array(spline["control_points"]) + offset).tolist()
+    return spline
+
+
+def faces(spline):
+    """The surfaces that a mesh shows: the spline, or the skin of a volume: no ends of closed axes, none that are a line."""
+    if len(spline["degree"]) < 3:
+        return [spline]
+    control = np.array(spline["control_points"]).reshape(*spline["control_shape"], -1)
+    found = []
+    for axis in range(3):
+        if spline["closed"][axis]:
+            continue
+        rest = [k for k in range(3) if k != axis]
+        for end in (0, -1):
+            net = np.take(control, end, axis=axis)
+            if any(np.ptp(net, axis=k).max() < 1e-12 * size_of(spline) for k in (0, 1)):
+                continue
+            found.append({"degree": [spline["degree"][k] for k in rest], "knots": [spline["knots"][k] for k in rest],
+                          "control_shape": list(net.shape[:-1]), "control_points": net.reshape(-1, net.shape[-1])})
+    return found
+
+
+def inside(spline, count, rng):
+    """Points of the spline over a random grid of its parameters, some in every piece, the ends of pieces among them."""
+    t = []
+    for axis in range(len(spline["degree"])):
+        p = places(spline, axis, 1)
+        within = np.concatenate([np.sort(rng.uniform(a, b, count)) for a, b in zip(p, p[1:])])
+        t.append(np.sort(np.concatenate([p, within])))
+    return evaluate(spline, *t).reshape(-1, len(spline["control_points"][0]))
+
+
+def to_triangles(points, corners):
+    """Distance of each point from the nearest of the triangles: in a triangle's plane, or from its edges."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    n = np.cross(b - a, c - a)
+    square = (n ** 2).sum(axis=1)
+    found = np.full(len(points), np.inf)
+    for part in np.array_split(np.arange(len(points)), max(1, len(points) * len(corners) // 400_000)):
+        p = points[part, None]
+        nearest = np.full((len(part), len(corners)), np.inf)
+        inner = np.ones(nearest.shape, bool)
+        for start, end in ((a, b), (b, c), (c, a)):
+            along = end - start
+            f = ((p - start) * along).sum(axis=-1) / np.maximum((along ** 2).sum(axis=-1), 1e-300)
+            nearest = np.minimum(nearest, np.linalg.norm(p - start - np.clip(f, 0, 1)[..., None] * along, axis=-1))
+            inner &= (np.cross(along, p - start) * n).sum(axis=-1) > 0
+        with np.errstate(invalid="ignore", divide="ignore"):
+            height = abs(((p - a) * n).sum(axis=-1)) / np.sqrt(square)
+        found[part] = np.where(inner & (square > 0), np.minimum(nearest, height), nearest).min(axis=1)
+    return found
+
+
+def to_lines(points, ends):
+    along = ends[:, 1] - ends[:, 0]
+    f = ((points[:, None] - ends[:, 0]) * along).sum(axis=-1) / np.maximum((along ** 2).sum(axis=-1), 1e-300)
+    return np.linalg.norm(points[:, None] - ends[:, 0] - np.clip(f, 0, 1)[..., None] * along, axis=-1).min(axis=1)
+
+
+def to_spline(points, spline):
+    """Distance of each point from a curve or surface: from the nearest of dense places in the nearest pieces by damped Gauss-Newton steps
+    within each piece. A point of the spline proves it: it is never too small."""
+    axes = range(len(spline["degree"]))
+    control = np.array(spline["control_points"]).reshape(*spline["control_shape"], -1)
+    each = 40 if len(axes) == 1 else 20
+    breaks = [places(spline, k, 1) for k in axes]
+    inner = [np.concatenate([a + (b - a) * (np.arange(each) + 0.5) / each for a, b in zip(t, t[1:])]) for t in breaks]
+    dense = evaluate(spline, *inner)
+    index = [i.ravel() for i in np.indices(dense.shape[:-1])]
+    piece = np.ravel_multi_index([i // each for i in index], [len(t) - 1 for t in breaks])
+    by_piece = np.argsort(piece, kind="stable").reshape(piece.max() + 1, -1)
+    square = ((dense.reshape(-1, control.shape[-1])[by_piece][None] - points[:, None, None]) ** 2).sum(axis=-1)
+    starts = min(6, square.shape[1])
+    nearest = square.min(axis=2).argsort(axis=1)[:, :starts]
+    start = by_piece[nearest, np.take_along_axis(square.argmin(axis=2), nearest, 1)].ravel()
+    at = np.stack([inner[k][index[k][start]] for k in axes], axis=-1)
+    low, high = (np.stack([breaks[k][index[k][start] // each + end] for k in axes], axis=-1) for end in (0, 1))
+    basis = [BSpline(np.array(spline["knots"][k]), np.eye(spline["control_shape"][k]), spline["degree"][k]) for k in axes]
+    points = np.repeat(points, starts, axis=0)
+
+    def point(at, derived=None):
+        values = control
+        for k in axes:
+            row = (basis[k].derivative() if k == derived else basis[k])(at[:, k])
+            values = np.einsum("mn,n...->m...", row, values) if k == 0 else np.einsum("mn,mn...->m...", row, values)
+        return values
+
+    away, damping = np.linalg.norm(points - point(at), axis=-1), np.full(len(points), 1e-3)
+    for _ in range(30):
+        rest = points - point(at)
+        jacobian = np.stack([point(at, k) for k in axes], axis=-1) * (high - low)[:, None, :]  # in parts of the piece
+        slope = np.einsum("mdk,md->mk", jacobian, rest)
+        jacobian = np.where(((at <= low) & (slope < 0) | (at >= high) & (slope > 0))[:, None, :], 0, jacobian)  # not out of the piece
+        normal = np.einsum("mdi,mdj->mij", jacobian, jacobian)
+        more = damping * np.trace(normal, axis1=1, axis2=2) + 1e-200
+        move = np.linalg.solve(normal + more[:, None, None] * np.eye(len(axes)), np.einsum("mdk,md->mk", jacobian, rest)[..., None])[..., 0]
+        there = np.clip(at + move * (high - low), low, high)
+        now = np.linalg.norm(points - point(there), axis=-1)
+        better = now < away
+        at[better], away[better] = there[better], now[better]
+        damping *= np.where(better, 0.1, 5)
+    return away.reshape(-1, starts).min(axis=1)
+
+
+def read_stl(path):
+    data = path.read_bytes()
+    count, = struct.unpack_from("<I", data, 80)
+    assert len(data) == 84 + 50 * count
+    records = np.frombuffer(data, np.dtype([("normal", "<3f4"), ("corners", "<9f4"), ("more", "<u2")]), offset=84)
+    return records["normal"].astype(float), records["corners"].astype(float).reshape(-1, 3, 3)
+
+
+def read_vtu(path):
+    """Points, the values of their arrays, and the cells that show the spline as (type, points)."""
+    piece = ElementTree.parse(path).getroot().find(".//Piece")
+    numbers = lambda element, kind: np.array((element.text or "").split(), dtype=kind)
+    data = {a.get("Name"): numbers(a, float) for a in piece.find("PointData")}
+    points = numbers(piece.find("Points/DataArray"), float).reshape(-1, 3)
+    cells = {a.get("Name"): numbers(a, int) for a in piece.find("Cells")}
+    split = np.split(cells["connectivity"], cells["offsets"][:-1]) if cells["offsets"].size else []
+    shown = [(kind, c) for kind, c in zip(cells["types"], split) if (data["part"][c] == 2).all()]
+    return points, data, shown
+
+
+def boundary(hexahedra):
+    """The quadrilaterals that only one hexahedron has, repeated corners left out."""
+    sides = {}
+    for c in hexahedra:
+        for side in ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)):
+            quad = [c[k] for k in side]
+            quad = [x for k, x in enumerate(quad) if x != quad[k - 1]]
+            if len(set(quad)) > 2:
+                sides.setdefault(tuple(sorted(quad)), []).append(quad)
+    return [quads[0] for quads in sides.values() if len(quads) == 1]
+
+
+def fans(polygons, turned):
+    """Triangles of polygons, a quadrilateral's by one diagonal or, turned, the other."""
+    found = []
+    for c in polygons:
+        c = list(c[1:]) + [c[0]] if turned and len(c) == 4 else list(c)
+        found += [(c[0], c[k], c[k + 1]) for k in range(1, len(c) - 1)]
+    return np.array(found)
+
+
+def edge_uses(triangles):
+    """How often each edge is used one way and the other."""
+    directed = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    turned = directed[:, 0] > directed[:, 1]
+    edges, of = np.unique(np.sort(directed, axis=1), axis=0, return_inverse=True)
+    of = of.ravel()
+    return np.bincount(of[~turned], minlength=len(edges)), np.bincount(of[turned], minlength=len(edges))
+
+
+def signed_volume(corners):
+    local = corners - corners.mean(axis=(0, 1))
+    return np.einsum("ij,ij->i", local[:, 0], np.cross(local[:, 1], local[:, 2])).sum() / 6
+
+
+KINDS = (  # axes, their kinds, poles
+    (1, ("even",), False), (1, ("uneven",), False), (1, ("closed",), False), (1, ("closed uneven",), False),
+    (2, ("even", "even"), False), (2, ("uneven", "uneven"), False), (2, ("closed", "uneven"), False), (2, ("closed", "closed"), False),
+    (2, ("closed uneven", "closed"), False), (2, ("closed", "even"), True), (2, ("closed uneven", "uneven"), True),
+    (3, ("even", "uneven", "even"), False), (3, ("closed", "even", "even"), False), (3, ("closed", "closed", "even"), False), (3, ("closed", "even", "even"), True))
+
+
+class SampledFiles(InFolder):
+    def cases(self):
+        for k in range(CASES):
+            rng = np.random.default_rng([SEED, k])
+            axes, kinds, poles = KINDS[k % len(KINDS)]
+            size, offset = (1e-6, 1, 1e6)[k // len(KINDS) % 3], (0, 0, 1e6)[int(rng.integers(3))]
+            spline = placed(make(rng, axes, int(rng.integers(2, 4)) if axes == 1 else 3, kinds, poles, mirrored=bool(k % 2)), size, offset)
+            chord = size * 10 ** rng.uniform(-2.5, -1.5 if axes < 3 else -1)
+            yield k, rng, spline, kinds, poles, chord, f"case {k} of seed {SEED}: {kinds}, poles {poles}, degrees {spline['degree']}, size {size}, offset {offset}, chord {chord:.3g}"
+
+    def write(self, spline):
+        """The spline about its first control point, which is judged: the place of the original takes digits from whoever evaluates it."""
+        (self.folder / "s.json").write_text(json.dumps(spline))
+        control = np.array(spline["control_points"])
+        self.centre = control[0]
+        self.rounding = 2.0 ** -52 * abs(control).max()
+        return {**spline, "control_points": (control - self.centre).tolist()}
+
+    def convert(self, name, *arguments, status=0):
+        done = self.run_batten("convert", "s.json", "-o", name, *arguments)
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done.stderr
+
+    def judge_mesh(self, spline, corners, allowed, rng, what):
+        """Dense points are near the facets, points of facets near the spline; the largest of these distances in parts of what is allowed."""
+        shown = faces(spline)
+        dense = np.concatenate([inside(face, 3, rng) for face in shown])
+        dense = dense[rng.permutation(len(dense))[:max(20, min(400, 3_000_000 // len(corners)))]]
+        out = to_triangles(dense, corners).max()
+        some_of = corners[rng.permutation(len(corners))[:150]]
+        weights = rng.dirichlet([1, 1, 1], len(some_of))
+        weights[::3] = (0.5, 0, 0.5)  # diagonals, where a twist shows most
+        on = np.einsum("ik,ikd->id", weights, some_of)
+        back = np.min([to_spline(on, face) for face in shown], axis=0).max()
+        self.assertLessEqual(out, allowed, what)
+        self.assertLessEqual(back, allowed, what)
+        return max(out, back) / allowed
+
+    def test_what_is_promised_holds(self):
+        parts = {}
+        for k, rng, spline, kinds, poles, chord, what in some(self.cases()):
+            spline = self.write(spline)
+            self.convert("s.vtu", "--chord-tolerance", chord)
+            points, data, cells = read_vtu(self.folder / "s.vtu")
+            points = points[:, :len(self.centre)] - self.centre
+            allowed = chord + self.rounding
+            if len(kinds) == 1:
+                ends = points[np.array([c for _, c in cells])]
+                dense = inside(spline, 40, rng)
+                share = rng.uniform(0, 1, (len(ends), 1))
+                away = max(to_lines(dense, ends).max(), to_spline(share * ends[:, 0] + (1 - share) * ends[:, 1], spline).max())
+                self.assertLessEqual(away, allowed, what)
+                parts.setdefault("curve", []).append(away / chord)
+                self.judge_places(spline, chord, what)
+                continue
+            solid = len(kinds) == 3
+            polygons = boundary([c for _, c in cells]) if solid else [c for _, c in cells]
+            for turned in (False, True):
+                triangles = fans(polygons, turned)
+                if turned or k % 3 == 0:
+                    parts.setdefault("volume" if solid else "surface", []).append(self.judge_mesh(spline, points[triangles], allowed, rng, what))
+            encloses = solid or (kinds[0].startswith("closed") and (poles or kinds[1].startswith("closed")))
+            if encloses:
+                one, other = edge_uses(triangles)
+                self.assertEqual((set(one), set(other)), ({1}, {1}), what)
+            self.judge_places(spline, chord, what)
+            self.judge_stl(spline, chord, encloses, rng, what, parts)
+        print("\nlargest distance in parts of the tolerance, mean and worst: " + "; ".join(f"{name} {np.mean(p):.2f} {max(p):.3f}" for name, p in parts.items()))
+
+    def judge_places(self, spline, chord, what):
+        """The grid of a .vts is that of the .csv: the spline's points at its parameters."""
+        self.convert("s.vts", "-o", "s.csv", "--chord-tolerance", chord)
+        axes, dim = len(spline["degree"]), len(spline["control_points"][0])
+        table = np.loadtxt(self.folder / "s.csv", delimiter=",", skiprows=1, ndmin=2)
+        t = [np.unique(table[:, k]) for k in range(axes)]
+        points = evaluate(spline, *t).reshape(-1, dim)
+        self.assertLess(abs(table[:, axes:] - self.centre - points).max(), 1e-11 * size_of(spline) + self.rounding, what)
+        piece = ElementTree.parse(self.folder / "s.vts").getroot().find(".//Piece")
+        extent = np.array(piece.get("Extent").split(), dtype=int).reshape(3, 2)
+        self.assertEqual([x.size for x in reversed(t)] + [1] * (3 - axes), (extent[:, 1] + 1).tolist(), what)
+        grid = np.array(piece.find("Points/DataArray").text.split(), dtype=float).reshape(-1, 3)
+        self.assertLess(abs(grid[:, :dim] - table[:, axes:]).max(), 1e-300, what)
+
+    def judge_stl(self, spline, chord, encloses, rng, what, parts):
+        moved = 3 ** 0.5 * FLOAT * abs(np.array(spline["control_points"]) + self.centre).max()
+        if moved > size_of(spline) / 20:  # hardly a point is left apart
+            return
+        said = self.convert("s.stl", "--chord-tolerance", chord)
+        self.assertEqual("single precision" in said, moved > chord / 2, (what, said))
+        normal, corners = read_stl(self.folder / "s.stl")
+        corners -= self.centre
+        parts.setdefault("stl", []).append(self.judge_mesh(spline, corners, max(chord, chord / 2 + moved), rng, what))
+        _, vertex = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+        triangles = vertex.reshape(-1, 3)
+        self.assertTrue((triangles != np.roll(triangles, 1, axis=1)).all(), what)
+        if encloses:
+            one, other = edge_uses(triangles)
+            self.assertEqual(one.tolist(), other.tolist(), what)
+            if moved < chord / 100 and "uneven" not in what:  # else rounding may make two edges one
+                self.assertEqual(set(one), {1}, what)
+                self.assertGreater(signed_volume(corners), 0, what)
+
+
+def size_of(spline):
+    return np.ptp(np.array(spline["control_points"]), axis=0).max()
+
+
+if __name__ == "__main__":
+    unittest.main()
