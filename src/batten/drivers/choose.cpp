@@ -4,6 +4,7 @@
 #include <batten/system/collocation.hpp>
 
 #include <fmt/format.h>
+#include <utility>
 
 namespace batten {
 
@@ -34,6 +35,9 @@ std::string reason_for(std::string_view name, SampleKind kind, Requests asked,
     if (name == "cg" && kind == SampleKind::cloud)
         return "a cloud: conjugate gradients, preconditioned axis by axis, cost less than a sparse "
                "factorisation";
+    if (name == "direct" && kind == SampleKind::cloud && asked.has(Request::smoothing) &&
+        !asked.has(Request::samples))
+        return "a smooth cloud: one sparse factorisation costs less than conjugate gradients";
     if (name != "direct") return "the fastest iteration that takes what is asked";
     return asked.has(Request::shape)     ? "the shape is kept by quadratic programs"
            : asked.has(Request::samples) ? "exact samples: one saddle-point solve"
@@ -46,6 +50,16 @@ bool determines(std::string_view name, const std::string& gap) {
     return gap.empty() || (name != "direct" && name != "clspia");
 }
 
+/// Whether roughness along several axes, which no product of matrices per axis comes near, makes
+/// conjugate gradients dearer than a sparse factorisation.
+bool smooth_and_small(const Problem& problem) {
+    constexpr Index most = 1 << 16; // control points whose factors memory surely holds
+    if (!problem.options.smooth.wanted) return false;
+    Index size = 1;
+    for (const Index n : problem.axes.control_points) size = size > most ? size : size * n;
+    return size <= most;
+}
+
 Choice automatic(const Problem& problem, Requests asked) {
     const SampleKind kind = problem.kind;
     const std::string gap = gap_of(problem);
@@ -54,6 +68,7 @@ Choice automatic(const Problem& problem, Requests asked) {
     std::vector<std::string_view> order{"search", "direct", "cg",  "mlspia",
                                         "clspia", "pia",    "epia"};
     if (kind == SampleKind::cloud) order = {"search", "cg", "direct", "clspia", "epia"};
+    if (kind == SampleKind::cloud && smooth_and_small(problem)) std::swap(order[1], order[2]);
     if (shape) order = {"search", "direct", "mlspia", "clspia", "pia"};
     for (std::string_view name : order) {
         const Driver& candidate = driver(name);

@@ -86,7 +86,8 @@ Smoothing smoothing_of(const NormalSystem& system, const Problem& problem) {
 std::optional<std::vector<Index>> fewer_control_points(const Problem& problem,
                                                        const std::vector<double>& freedom) {
     constexpr double enough = 8; // per degree of freedom
-    if (!size_is_open(problem) || freedom.empty()) return {};
+    // what must hold may take all of them
+    if (!size_is_open(problem) || freedom.empty() || problem.options.hold.equalities()) return {};
     std::vector<Index> result = problem.axes.control_points;
     for (std::size_t k = 0; k < result.size(); ++k)
         result[k] = std::min(result[k], static_cast<Index>(std::ceil(enough * freedom[k])) +

@@ -27,13 +27,14 @@ Fitted answered(const Problem& problem, const Choice& choice) {
         return by(*choice.driver, choice.reason);
     } catch (const SolverError& error) {
         const Driver& other = driver("cg");
+        const bool smooth = problem.options.smooth.wanted;
+        const bool others = !choice.reason.empty() && choice.driver->name == "direct" &&
+                            other.takes(problem.kind)->covers(requests_of(problem));
+        if (others && smooth && problem.kind == SampleKind::cloud) return by(other, error.what());
         if (problem.options.smooth.lambda > 0)
             throw InvalidInput(fmt::format("smoothing by {}: {}; another factor may do",
                                            problem.options.smooth.lambda, error.what()));
-        if (choice.reason.empty() || choice.driver->name != "direct" ||
-            problem.options.smooth.wanted ||
-            !other.takes(problem.kind)->covers(requests_of(problem)))
-            throw;
+        if (!others || smooth) throw;
         return by(other, fmt::format("{}: an iteration leaves it where it starts", error.what()));
     }
 }

@@ -161,7 +161,7 @@ std::vector<Index> smoothing_size(const Problem& problem) {
 Index most_smoothing_size(const Problem& problem) {
     const std::size_t axes = problem.axes.count();
     if (problem.parameters.is_scattered()) return axes == 2 ? 60 : 20;
-    return axes == 1 ? 2000 : axes == 2 ? 200 : 40;
+    return axes == 1 ? 2000 : axes == 2 ? 100 : 25;
 }
 
 double samples_along(const Problem& problem, std::size_t axis) {

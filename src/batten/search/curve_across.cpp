@@ -69,7 +69,7 @@ class CoordinateSystem {
     }
 
     void add_roughness(double lambda, int order) {
-        const BandedMatrix roughness = roughness_matrix(knots_, order);
+        const BandedMatrix roughness = unit_roughness_matrix(knots_, order);
         for (Index i = 0; i < roughness.size(); ++i)
             for (int k = 0; k <= roughness.bandwidth(); ++k)
                 for (Index d = 0; d < dim_; ++d)

@@ -29,7 +29,8 @@ double shown_roughness(const CurveTask& task) {
         const double second = 2 * bend / (before * after);
         sum += second * second * (before + after) / 2;
     }
-    return sum;
+    const double length = t.back() - t.front();
+    return sum * length * length * length;
 }
 
 } // namespace

@@ -28,9 +28,10 @@ AxisRows::AxisRows(KnotVector knots, std::span<const double> parameters,
     for (std::size_t i = 0; i < lead.size(); ++i)
         order_[static_cast<std::size_t>(begin[static_cast<std::size_t>(lead[i])]++)] =
             static_cast<Index>(i);
+    const double scale = unit_roughness_scale(knots_, order);
     for_each_roughness_row(knots_, order, knots_.degree() - order + 1,
                            [&](double weight, const ActiveFunctions& derivatives) {
-                               rough_.push_back({derivatives, weight});
+                               rough_.push_back({derivatives, scale * weight});
                            });
     std::ranges::stable_sort(
         rough_, {}, [&](const Rough& rough) { return shape.row(rough.derivatives, 1).lead; });

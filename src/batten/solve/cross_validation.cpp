@@ -1,133 +1,18 @@
 #include <batten/solve/cross_validation.hpp>
 
-#include <batten/solve/smoothing_quality.hpp>
-#include <batten/system/roughness.hpp>
+#include <batten/basis/place_knots.hpp>
+#include <batten/solve/factor_search.hpp>
+#include <batten/solve/residual_system.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <optional>
+#include <utility>
 
 namespace batten {
 
 namespace {
-
-double trace(const BandedMatrix& matrix) {
-    double sum = 0;
-    for (double x : matrix.diagonal()) sum += x;
-    return sum;
-}
-
-/// Sum of the samples' weights: B-splines sum to one.
-double total_weight(const NormalSystem& system) {
-    PointSet ones(system.size(), 1);
-    ones.fill(1);
-    PointSet image(system.size(), 1);
-    system.apply(ones, image);
-    double sum = 0;
-    for (double x : image.values()) sum += x;
-    return sum;
-}
-
-/// The factor that makes the traces of the roughness and of the normal equations alike: between the
-/// extremes, and exact in every unit of the parameters that is a power of two.
-double balancing_factor(const NormalSystem& system, int order) {
-    double rough = 0;
-    for (std::size_t k = 0; k < system.axes().size(); ++k) {
-        double product = 1;
-        for (std::size_t l = 0; l < system.axes().size(); ++l)
-            product *= trace(roughness_matrix(system.axes()[l], l == k ? order : 0));
-        rough = std::max(rough, product);
-    }
-    double sum = 0;
-    for (double x : system.diagonal()) sum += x;
-    return sum / total_weight(system) / rough;
-}
-
-/// V of factors that are so many doublings from the balancing one; each is judged once.
-class Search {
-  public:
-    Search(const NormalSystem& system, const Samples& samples, const Parameters& parameters,
-           int order)
-        : quality_(smoothing_quality(system, samples, parameters, order)),
-          balance_(balancing_factor(system, order)),
-          m_(static_cast<double>(system.sample_count())),
-          size_(static_cast<double>(system.size())) {
-        for (const KnotVector& axis : system.axes()) polynomials_ *= axis.closed() ? 1 : order;
-    }
-
-    double factor(double doublings) const { return balance_ * std::exp2(doublings); }
-
-    Quality quality(double doublings) {
-        if (const auto found = seen_.find(doublings); found != seen_.end()) return found->second;
-        Quality result{std::numeric_limits<double>::infinity(), size_, {}};
-        try {
-            result = (*quality_)(factor(doublings));
-        } catch (const SolverError&) { // too little to hold every control point, or too much
-        }
-        return seen_[doublings] = result;
-    }
-
-    double score(double doublings) {
-        const Quality q = quality(doublings);
-        const double left = 1 - q.trace / m_;
-        return left > 0 ? q.squares / m_ / (left * left) : std::numeric_limits<double>::infinity();
-    }
-
-    /// The best of steps to both sides, until all freedom is there or none but the polynomials'.
-    double scanned() {
-        constexpr int most_steps = 64;
-        double best = 0;
-        const auto see = [&](double doublings) {
-            if (score(doublings) < score(best)) best = doublings;
-        };
-        const double all = size_ * (1 - (quality_->estimated() ? 0.01 : 1e-4));
-        const double none = polynomials_ + (quality_->estimated() ? 2 : 1e-3);
-        for (int k = 1; k <= most_steps && quality(-step() * (k - 1)).trace < all; ++k)
-            see(-step() * k);
-        for (int k = 1; k <= most_steps && quality(step() * (k - 1)).trace > none; ++k)
-            see(step() * k);
-        return best;
-    }
-
-    /// Near the best of a scan, where V is level: alike to both sides, found by the Illinois
-    /// variant of false position.
-    double levelled(double best) {
-        const auto slope = [&](double x) { return score(x + 0.5) - score(x - 0.5); };
-        const int most_rounds = quality_->estimated() ? 4 : 40;
-        double low = best - step();
-        double high = best + step();
-        double at_low = slope(low);
-        double at_high = slope(high);
-        if (!(at_low < 0) || !(at_high > 0) || !std::isfinite(at_low) || !std::isfinite(at_high))
-            return best;
-        double middle = best;
-        int same_side = 0; // of the level place, so many times: below it negative
-        for (int round = 0; round < most_rounds; ++round) {
-            const double next = (low * at_high - high * at_low) / (at_high - at_low);
-            if (next == middle || !(next > low && next < high)) break;
-            middle = next;
-            const double at = slope(middle);
-            if (at == 0) break;
-            same_side = at < 0 ? std::min(same_side, 0) - 1 : std::max(same_side, 0) + 1;
-            (at < 0 ? low : high) = middle;
-            (at < 0 ? at_low : at_high) = at;
-            if (same_side < -1) at_high /= 2;
-            if (same_side > 1) at_low /= 2;
-        }
-        return score(middle) <= score(best) ? middle : best;
-    }
-
-  private:
-    double step() const { return quality_->estimated() ? 4 : 2; }
-
-    std::unique_ptr<SmoothingQuality> quality_;
-    double balance_;
-    double m_;
-    double size_;
-    double polynomials_ = 1; ///< that no roughness sees
-    std::map<double, Quality> seen_;
-};
 
 Smoothing judged(const NormalSystem& system, double lambda, const Quality& quality) {
     const auto m = static_cast<double>(system.sample_count());
@@ -136,11 +21,83 @@ Smoothing judged(const NormalSystem& system, double lambda, const Quality& quali
             std::sqrt(mean_square * m / std::max(1.0, m - quality.trace))};
 }
 
+/// Even knots for at most so many control points per axis.
+std::vector<KnotVector> coarser(const std::vector<KnotVector>& axes, Index per_axis) {
+    std::vector<KnotVector> result;
+    for (const KnotVector& axis : axes)
+        result.push_back(
+            axis.free_count() <= per_axis
+                ? axis
+                : uniform_knots(axis.degree(), per_axis, axis.begin(), axis.end(), axis.closure()));
+    return result;
+}
+
+/// V of the system's least squares without smoothing, for samples of which a spline leaves the
+/// rest: their reduction by preconditioned conjugate gradients.
+double score_of_all(const NormalSystem& system, const Spline& spline, const Samples& samples,
+                    const Parameters& parameters) {
+    constexpr int rounds = 40;
+    const auto m = static_cast<double>(samples.size());
+    const double left = 1 - static_cast<double>(system.size()) / m;
+    const auto rest = residual_system(spline, system.axes(), samples, parameters);
+    const auto nearby = factorize_axes(*rest);
+    if (!(left > 0) || !nearby) return std::numeric_limits<double>::infinity();
+    PointSet control(rest->size(), rest->dim());
+    PointSet gradient = rest->rhs();
+    PointSet direction = nearby->solve(gradient);
+    PointSet image(rest->size(), rest->dim());
+    double slope = inner_product(gradient, direction);
+    for (int round = 0; round < rounds && slope > 0; ++round) {
+        rest->apply(direction, image);
+        const double part = slope / inner_product(direction, image);
+        add_scaled(control, part, direction);
+        add_scaled(gradient, -part, image);
+        PointSet next = nearby->solve(gradient);
+        const double before = std::exchange(slope, inner_product(gradient, next));
+        add_scaled(next, slope / before, direction);
+        direction = std::move(next);
+    }
+    return (rest->data_energy() + rest->energy(control)) / m / left / left;
+}
+
+/// The choice on a coarser net that bears it: one that has a few control points per degree of
+/// freedom along each axis, where all control points of the finer net without smoothing do no
+/// better; none where there is no such net.
+std::optional<Smoothing> chosen_on_coarser(const NormalSystem& system, const Samples& samples,
+                                           const Parameters& parameters, int order) {
+    constexpr Index first = 48;
+    constexpr double per_freedom = 4;
+    std::optional<double> last;
+    for (Index per_axis = first;; per_axis *= 2) {
+        const std::vector<KnotVector> axes = coarser(system.axes(), per_axis);
+        const auto coarse = assemble(axes, samples, parameters);
+        if (coarse->size() > system.size() / 2) return {};
+        FactorSearch search(*coarse, samples, parameters, order);
+        const double best = last ? search.lowest(search.descended(search.doublings(*last)))
+                                 : search.levelled(search.scanned());
+        const Quality quality = search.quality(best);
+        if (!std::isfinite(quality.squares)) return {};
+        last = search.factor(best);
+        const double along = std::pow(quality.trace, 1 / static_cast<double>(axes.size()));
+        if (along * per_freedom > static_cast<double>(per_axis)) continue;
+        const auto smoothed = coarse->clone();
+        smoothed->add_roughness(*last, order);
+        const Spline spline = Spline::from_free(
+            axes, uncentred(factorize(*smoothed)->solve(coarse->rhs()), coarse->centre()));
+        if (score_of_all(system, spline, samples, parameters) < search.score(best)) return {};
+        return judged(system, *last, quality);
+    }
+}
+
 } // namespace
 
 Smoothing cross_validated(const NormalSystem& system, const Samples& samples,
                           const Parameters& parameters, int order) {
-    Search search(system, samples, parameters, order);
+    constexpr Index few = 5000; // control points whose factorisation costs little
+    if (system.factors().empty() && parameters.is_scattered() && system.size() > few)
+        if (const auto coarse = chosen_on_coarser(system, samples, parameters, order))
+            return *coarse;
+    FactorSearch search(system, samples, parameters, order);
     const double best = search.levelled(search.scanned());
     const Quality chosen = search.quality(best);
     if (!std::isfinite(chosen.squares))

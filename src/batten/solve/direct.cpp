@@ -82,13 +82,15 @@ PointSet constrained(PointSet control, const Factorization& normal,
     return onto_constraints(std::move(control), constraints, normal, schur);
 }
 
-/// Factors of the normal equations where these keep half of a number's digits, else of the rows.
+/// Factors of the normal equations where these keep half of a number's digits, or ten where
+/// smoothing or weights make them lose some, else of the rows.
 struct Solver {
     std::unique_ptr<Factorization> normal;
     std::unique_ptr<RowFactorization> rows;
 
     Solver(const NormalSystem& system, const SampleRows& of) {
-        const double most = 1 / std::sqrt(std::numeric_limits<double>::epsilon());
+        const bool plain = of.lambda == 0 && of.samples.weights.empty();
+        const double most = plain ? 1 / std::sqrt(std::numeric_limits<double>::epsilon()) : 1e6;
         const bool has_rows = !system.factors().empty();
         try {
             normal = factorize(system);

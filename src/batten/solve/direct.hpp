@@ -17,7 +17,7 @@ PointSet solve_direct(const NormalSystem& system);
 PointSet solve_direct(const NormalSystem& system, const Constraints& constraints);
 
 /// The same from the rows that a system with factors was made of where its normal equations cannot
-/// be solved to half of a number's digits.
+/// be solved to half of a number's digits, with smoothing or weights to ten.
 PointSet solve_direct(const NormalSystem& system, const SampleRows& rows,
                       const Constraints& constraints);
 

@@ -1,5 +1,7 @@
 #include <batten/solve/smoothing_quality.hpp>
 
+#include <batten/solve/residual_system.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -63,24 +65,9 @@ struct Residuals {
 
     Residuals(PointSet reference, const NormalSystem& of, const Samples& samples,
               const Parameters& parameters)
-        : control(std::move(reference)) {
-        const Spline spline = Spline::from_free(of.axes(), uncentred(control, of.centre()));
-        const bool scattered = parameters.is_scattered();
-        PointSet points(samples.points);
-        for_each_block(points.size(), 1 << 12, [&](const Block& block) {
-            for (Index i = block.begin; i < block.end; ++i) {
-                const std::vector<double> at =
-                    spline(scattered ? std::vector<double>(parameters.scattered[i].begin(),
-                                                           parameters.scattered[i].end())
-                                     : parameter_of(parameters, i));
-                for (Index d = 0; d < points.dim(); ++d)
-                    points(i, d) -= at[static_cast<std::size_t>(d)];
-            }
-        });
-        Samples rest = samples;
-        rest.points = Points(std::move(points));
-        system = assemble(of.axes(), rest, parameters);
-    }
+        : control(std::move(reference)),
+          system(residual_system(Spline::from_free(of.axes(), uncentred(control, of.centre())),
+                                 of.axes(), samples, parameters)) {}
 
     /// Sum of the weighted squares for other control points than the reference.
     double squares(PointSet other) const {

@@ -173,7 +173,8 @@ void BandedSystem::apply(const PointSet& x, PointSet& y) const {
 }
 
 void BandedSystem::add_roughness(double lambda, int order) {
-    gram_.add(lambda * gram_.total(), roughness_matrix(axes_[0], order)); // B-splines sum to one
+    gram_.add(lambda * gram_.total(),
+              unit_roughness_matrix(axes_[0], order)); // B-splines sum to one
 }
 
 } // namespace batten

@@ -174,7 +174,7 @@ std::vector<const BandedMatrix*> KroneckerSystem::factors() const {
 
 void KroneckerSystem::add_roughness(double lambda, int order) {
     for (std::size_t k = 0; k < grams_.size(); ++k)
-        grams_[k].add(lambda * grams_[k].total(), roughness_matrix(axes_[k], order));
+        grams_[k].add(lambda * grams_[k].total(), unit_roughness_matrix(axes_[k], order));
 }
 
 } // namespace batten

@@ -55,7 +55,7 @@ class NormalSystem {
     /// sandwich smoother's [XiaoLiRuppert2013], a Kronecker product where the weights are one: for
     /// every choice of axes lambda to the power of their number times the squared derivative along
     /// all of them, integrated along them and averaged over the samples' parameters along the
-    /// others.
+    /// others. Every axis counts as stretched to [0, 1].
     virtual void add_roughness(double lambda, int order) = 0;
 
     /// The gradient A^T D (Q - A P) at control points relative to the centre.

@@ -57,4 +57,16 @@ BandedMatrix roughness_matrix(const KnotVector& knots, int order) {
     return matrix;
 }
 
+double unit_roughness_scale(const KnotVector& knots, int order) {
+    double scale = 1 / knots.length();
+    for (int k = 0; k < 2 * order; ++k) scale *= knots.length();
+    return scale;
+}
+
+BandedMatrix unit_roughness_matrix(const KnotVector& knots, int order) {
+    BandedMatrix matrix(knots.free_count(), knots.degree(), knots.closure());
+    matrix.add(unit_roughness_scale(knots, order), roughness_matrix(knots, order));
+    return matrix;
+}
+
 } // namespace batten

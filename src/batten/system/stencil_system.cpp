@@ -171,7 +171,7 @@ void StencilSystem::set_grid(const Parameters& grid) {
 void StencilSystem::add_roughness(double lambda, int order) {
     const double weight = total_weight_ > 0 ? total_weight_ : 1;
     std::vector<BandedMatrix> rough;
-    for (const KnotVector& axis : axes_) rough.push_back(roughness_matrix(axis, order));
+    for (const KnotVector& axis : axes_) rough.push_back(unit_roughness_matrix(axis, order));
     // the axes that a term is rough along: of a grid any, of a cloud one
     for (unsigned along = 1; along < 1U << axes_.size(); ++along) {
         if (grid_means_.empty() && std::popcount(along) > 1) continue;
@@ -181,7 +181,7 @@ void StencilSystem::add_roughness(double lambda, int order) {
             const bool is_rough = (along >> k & 1U) != 0;
             if (is_rough) factor *= lambda;
             matrices.push_back(is_rough              ? rough[k]
-                               : grid_means_.empty() ? roughness_matrix(axes_[k], 0)
+                               : grid_means_.empty() ? unit_roughness_matrix(axes_[k], 0)
                                                      : grid_means_[k]);
         }
         add_product(factor, matrices);

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <batten/solve/smoothing_quality.hpp>
+
+#include <map>
+
+namespace batten {
+
+/// The search for the factor of the roughness with the least V = (RSS / m) / (1 - trace / m)^2.
+/// Factors are told as doublings of one that balances the traces of the roughness and of the
+/// normal equations; each is judged once.
+class FactorSearch {
+  public:
+    /// The arguments must outlive it.
+    FactorSearch(const NormalSystem& system, const Samples& samples, const Parameters& parameters,
+                 int order);
+
+    double factor(double doublings) const;
+    double doublings(double factor) const;
+    /// An infinite sum of squares where the factor does not determine every control point.
+    Quality quality(double doublings);
+    double score(double doublings);
+
+    /// The best of steps to both sides, until all freedom is there or none but the polynomials'.
+    double scanned();
+    /// The best that steps from a start lead to.
+    double descended(double start);
+    /// Near the best of steps, where V is level: alike to both sides, found by the Illinois variant
+    /// of false position.
+    double levelled(double best);
+    /// Near the best of steps, the lowest place of the parabola through it and those beside it.
+    double lowest(double best);
+
+  private:
+    double step() const { return quality_->estimated() ? 4 : 2; }
+
+    std::unique_ptr<SmoothingQuality> quality_;
+    double balance_;
+    double m_;
+    double size_;
+    double polynomials_ = 1; ///< that no roughness sees
+    std::map<double, Quality> seen_;
+};
+
+/// Sum of the weights of a system's samples.
+double total_weight(const NormalSystem& system);
+
+} // namespace batten
