@@ -46,7 +46,8 @@ Bend bend_of(const std::vector<double>& net, Index dim, const PerAxis<int>& degr
         for (std::size_t b = a; b < 3; ++b) {
             const double factor =
                 static_cast<double>(degrees[a]) * (a == b ? degrees[a] - 1 : degrees[b]) / 8;
-            if (factor > 0)
+            // a volume's cells are trilinear: no twist parts them from it
+            if (factor > 0 && (a == b || degrees[0] == 0))
                 bend[a][b] = bend[b][a] = factor * largest_difference(net, dim, order, a, b);
         }
     return bend;
