@@ -230,9 +230,10 @@ std::string svg_projection(const Scene& scene) {
         width, height);
     if (!scene.title.empty()) svg += fmt::format("  <title>{}</title>\n", svg_escaped(scene.title));
     if (faces.empty()) svg += curve_svg(spline, view);
-    if (!faces.empty() && view.low == view.high) // one point
-        svg += fmt::format("  <path class=\"curve\" d=\"M {0} h 0\"/>\n",
-                           view.at(faces.front().points.front()));
+    if (view.low == view.high) // one point
+        svg += fmt::format("  <path class=\"dot\" d=\"M {} h 0\" stroke=\"#1f4e79\" "
+                           "stroke-width=\"6\"/>\n",
+                           view.at(in_space(spline.control_points()[0])));
     svg += "  <g>\n";
     for (const Piece& piece : pieces) svg += piece.svg + "\n";
     svg += "  </g>\n";
