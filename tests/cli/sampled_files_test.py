@@ -1,4 +1,5 @@
 """Sampled files keep the chord tolerance both ways, and what encloses something is closed: judged by SciPy's B-splines over generated splines."""
+import base64
 import json
 import os
 import struct
@@ -390,6 +391,26 @@ class SampledFiles(InFolder):
             t = [np.linspace(k[0], k[-1], 9) for k in knots]
             at = np.stack(np.meshgrid(*t, indexing="ij"), axis=-1).reshape(-1, axes)
             self.assertLess(abs(evaluate(drawn, *t).reshape(-1, 3)[:, :axes + 1] - np.column_stack([at, value(at)])).max(), 1e-10)
+
+    def test_a_page_shows_a_function_as_its_graph(self):
+        """What the page draws, its stretch taken back: samples over their parameters on the spline's values, control points over the means of knots."""
+        t = np.linspace(0, 1, 40)
+        heights = 1e-6 * np.sin(6 * t) + 3
+        np.savetxt(self.folder / "f.csv", heights)
+        done = self.run_batten("fit", "f.csv", "--parametrize", "uniform", "-n", 12, "-q", "-o", "s.json", "--report", "f.html", "-o", "f.vtu")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        spline = json.loads((self.folder / "s.json").read_text())
+        page = (self.folder / "f.html").read_text()
+        data = json.loads(page.split('id="batten-data"', 1)[1].split(">", 1)[1].split("</script>", 1)[0])
+        drawn = lambda text: np.frombuffer(base64.b64decode(text), "<f4").reshape(-1, 2) / data["stretch"] + data["centre"]
+        self.assertTrue(data["graph"])
+        self.assertLess(abs((drawn(data["samples"]) - np.column_stack([t, heights])) / [1, 1e-6]).max(), 1e-6)
+        knots = np.array(spline["knots"][0])
+        means = [knots[k + 1:k + 4].mean() for k in range(12)]
+        expected = np.column_stack([means, np.array(spline["control_points"])[:, 0]])
+        self.assertLess(abs((drawn(data["spline"]["control"]) - expected) / [1, 1e-6]).max(), 1e-6)
+        points, values, _ = read_vtu(self.folder / "f.vtu")
+        self.assertLess(abs(points[values["part"] == 0][:, :2] - np.column_stack([t, heights])).max(), 1e-14)
 
     def test_a_spline_that_is_one_point(self):
         for axes in (1, 2, 3):
