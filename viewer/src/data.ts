@@ -29,7 +29,11 @@ export interface ReportData {
   worst: number;
   count: number;
   dim: number;
+  /** Whether the spline is a function's graph, drawn in other units along every axis. */
+  graph: boolean;
+  /** Coordinates are drawn relative to the centre, each times its stretch. */
   centre: number[];
+  stretch: number[];
   /** Indices of the samples shown; all when null. */
   shown: Int32Array | null;
   samples: Float32Array;

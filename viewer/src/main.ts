@@ -146,7 +146,7 @@ function start() {
   const worstAt = data.shown ? data.shown.indexOf(data.worst) : data.worst;
   const read = (shownAt: number) => {
     const index = indexOf(shownAt);
-    const values = Array.from({ length: data.dim }, (_, d) => digits(data.samples[shownAt * data.dim + d] + data.centre[d], 8));
+    const values = Array.from({ length: data.dim }, (_, d) => digits(data.samples[shownAt * data.dim + d] / data.stretch[d] + data.centre[d], 8));
     const deviation = data.deviations[shownAt];
     const part = data.tolerance > 0 ? `, ${Math.round((100 * deviation) / data.tolerance)} % of the tolerance` : "";
     element("picked").hidden = false;
@@ -180,7 +180,8 @@ function start() {
     toggle("knot lines", data.spline.control.length < 3e4, draw(surface.lines));
     const select = document.createElement("select");
     select.setAttribute("aria-label", "What the surface's colours show");
-    for (const [value, name] of [["plain", "plain"], ["zebra", "zebra stripes"], ["gaussian", "Gaussian curvature"], ["mean", "mean curvature"]]) select.add(new Option(name, value));
+    const curvatures = data.graph ? [] : [["gaussian", "Gaussian curvature"], ["mean", "mean curvature"]];
+    for (const [value, name] of [["plain", "plain"], ["zebra", "zebra stripes"], ...curvatures]) select.add(new Option(name, value));
     select.addEventListener("change", () => {
       map = select.value as SurfaceMap;
       look();

@@ -101,7 +101,7 @@ export class CurvePart {
     this.line = new Line2(new LineGeometry(), new LineMaterial({ linewidth: 2.5 }));
     this.group.add(this.line);
     this.move(data.spline.control);
-    if (data.dim === 2) this.makeComb();
+    if (data.dim === 2 && !data.graph) this.makeComb();
   }
   move(control: Float32Array) {
     const points = inSpace(evaluate(this.data.spline, [this.t], [0], control), this.data.dim);

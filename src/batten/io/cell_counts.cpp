@@ -46,7 +46,8 @@ Bend bend_of(const std::vector<double>& net, Index dim, const PerAxis<int>& degr
         for (std::size_t b = a; b < 3; ++b) {
             const double factor =
                 static_cast<double>(degrees[a]) * (a == b ? degrees[a] - 1 : degrees[b]) / 8;
-            if (factor > 0)
+            // a volume's cells are trilinear: no twist parts them from it
+            if (factor > 0 && (a == b || degrees[0] == 0))
                 bend[a][b] = bend[b][a] = factor * largest_difference(net, dim, order, a, b);
         }
     return bend;
@@ -140,17 +141,18 @@ CellCounts least_cells(const Spline& spline, double chord) {
     const BezierPieces pieces(spline);
     const Counting counting(pieces, chord / pieces.in_own_units(1));
     const auto axes = static_cast<std::size_t>(spline.axis_count());
-    // how the tolerance is best shared between the axes is found by trial
+    // how the tolerance is best shared between the axes is found by trial, from even shares on
     const std::vector<double> parts = axes == 1 ? std::vector{1.0}
                                       : axes == 2
-                                          ? std::vector{0.75, 0.85, 1.0, 1.4, 2.0, 4.0, 16.0}
-                                          : std::vector{0.75, 1.0, 1.4, 4.0};
+                                          ? std::vector{1.0, 0.75, 0.85, 1.4, 2.0, 4.0, 16.0}
+                                          : std::vector{1.0, 0.75, 1.4, 4.0};
+    constexpr double worth = 0.95; // of cells that are longer one way
     PerAxis<std::vector<double>> best;
     double fewest = std::numeric_limits<double>::infinity();
     for (double p : parts)
         for (double q : axes == 3 ? parts : std::vector{p}) {
             auto n = counting.counts({1, q, p});
-            if (const double points = total(n); points < fewest || best[0].empty()) {
+            if (const double points = total(n); points < worth * fewest || best[0].empty()) {
                 fewest = points;
                 best = std::move(n);
             }

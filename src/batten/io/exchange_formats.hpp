@@ -4,7 +4,8 @@
 
 namespace batten {
 
-/// Wavefront OBJ free-form curve or surface (`cstype bspline`) in space; several follow each other.
+/// Wavefront OBJ free-form curve or surface (`cstype bspline`) in space, of a function its graph;
+/// several follow each other.
 std::string obj_text(const Scene& scene);
 
 /// GoTools .g2 curves (100), surfaces (200) and volumes (700); several follow each other.

@@ -28,16 +28,17 @@ std::vector<double> divided(const std::vector<double>& breaks, const std::vector
     return t;
 }
 
-/// What is left of the tolerance when points are moved by the rounding of their coordinates.
-double after_rounding(const Spline& spline, double chord) {
+/// What is left of the tolerance when points are moved by the rounding of their coordinates to
+/// doubles, and by a file by `moved`: of that at least half.
+double after_rounding(const Spline& spline, double chord, double moved) {
     if (!(chord > 0) || !std::isfinite(chord))
         throw InvalidInput(fmt::format("chord tolerance {}: must be positive and finite", chord));
-    const double moved = rounding(spline, std::numeric_limits<double>::epsilon());
-    if (!(chord > 2 * moved))
+    const double rounded = rounding(spline, std::numeric_limits<double>::epsilon());
+    if (!(chord > 2 * rounded))
         throw InvalidInput(
             fmt::format("chord tolerance {}: double precision moves these points by up to {:.2g}",
-                        chord, moved));
-    return chord - moved;
+                        chord, rounded));
+    return std::max(chord / 2, chord - moved) - rounded / 2;
 }
 
 /// Whether the end of a surface's axis is one point.
@@ -132,8 +133,8 @@ AxisPlaces places_of(const Spline& spline, const CellCounts& cells, double point
 
 } // namespace
 
-AxisPlaces sampling(const Spline& spline, double chord) {
-    const double part = after_rounding(spline, chord);
+AxisPlaces sampling(const Spline& spline, double chord, double moved) {
+    const double part = after_rounding(spline, chord, moved);
     if (!is_function(spline) && !(diagonal(spline.control_points()) > 0)) {
         AxisPlaces one;
         for (const KnotVector& axis : spline.axes()) one.push_back({axis.begin()});
@@ -149,8 +150,8 @@ AxisPlaces sampling(const Spline& spline, double chord) {
     return places_of(spline, cells, points, chord);
 }
 
-AxisPlaces skin_sampling(const Spline& volume, double chord) {
-    const CellCounts cells = skin_cells(volume, after_rounding(volume, chord));
+AxisPlaces skin_sampling(const Spline& volume, double chord, double moved) {
+    const CellCounts cells = skin_cells(volume, after_rounding(volume, chord, moved));
     double points = 0;
     for (std::size_t k = 0; k < 3; ++k)
         points += 2 * points_along(cells[(k + 1) % 3]) * points_along(cells[(k + 2) % 3]);
@@ -172,13 +173,15 @@ bool is_same_point(std::span<const double> a, std::span<const double> b, double 
 }
 
 double rounding(const Spline& spline, double epsilon) {
-    double largest = 0;
-    for (double x : spline.control_points().values()) largest = std::max(largest, std::abs(x));
-    return std::sqrt(static_cast<double>(spline.dim())) * epsilon * largest;
+    const PointSet box = bounding_box(spline.control_points());
+    double largest = 0; // distance of a corner of the box from the origin, squares kept in range
+    for (Index d = 0; d < box.dim(); ++d)
+        largest = std::hypot(largest, std::max(std::abs(box(0, d)), std::abs(box(1, d))));
+    return epsilon * largest;
 }
 
-double picture_chord(const Spline& spline) {
-    return std::max({diagonal(spline.control_points()) / 1000,
+double picture_chord(const Spline& spline, double parts) {
+    return std::max({diagonal(spline.control_points()) / parts,
                      4 * rounding(spline, std::numeric_limits<double>::epsilon()), 1e-300});
 }
 

@@ -11,14 +11,16 @@ namespace batten {
 using AxisPlaces = std::vector<std::vector<double>>;
 
 /// Parameters so dense that flat pieces between the points there are within `chord`: a curve's
-/// chords, both triangles of a surface's cells by either diagonal, all that a volume's cells hold.
-/// A surface that is closed, or ends in points, gets cells enough to enclose what it encloses; a
-/// spline that is one point gets one. At most 10^7 points; throws InvalidInput when these do not
-/// suffice, or the coordinates' double precision does not, or `chord` is not positive.
-AxisPlaces sampling(const Spline& spline, double chord);
+/// chords, both triangles of a surface's cells, and of those on a volume's faces, by either
+/// diagonal, a volume's trilinear cells. A surface that is closed, or ends in points, gets cells
+/// enough to enclose what it encloses; a spline that is one point gets one. A file that moves
+/// points by `moved` leaves so much less of the chord, half of it at least. At most 10^7 points;
+/// throws InvalidInput when these do not suffice, or double precision does not, or `chord` is not
+/// positive.
+AxisPlaces sampling(const Spline& spline, double chord, double moved = 0);
 
 /// Parameters so dense that this holds for the six faces of a volume.
-AxisPlaces skin_sampling(const Spline& volume, double chord);
+AxisPlaces skin_sampling(const Spline& volume, double chord, double moved = 0);
 
 /// Whether the spline's two ends along the axis are one: a closed axis, or ends that coincide. The
 /// graph of a function has two ends everywhere.
@@ -34,8 +36,8 @@ bool is_same_point(std::span<const double> a, std::span<const double> b, double 
 /// precision.
 double rounding(const Spline& spline, double epsilon);
 
-/// The chord that is kept where none is stated: a thousandth of the control points' diagonal, or
-/// what rounding leaves of it.
-double picture_chord(const Spline& spline);
+/// A part of the control points' diagonal, or what rounding leaves of it: the chord that is kept
+/// where none is stated, and that pictures are drawn to.
+double picture_chord(const Spline& spline, double parts = 1000);
 
 } // namespace batten

@@ -29,13 +29,6 @@ void check_surface(const Spline& spline) {
                 fmt::format("an .stl holds single precision, a coordinate of {} is beyond it", x));
 }
 
-/// What is left of the chord tolerance when points are moved by their rounding to floats; where
-/// that takes all, half of it.
-double chord_beside_rounding(const Scene& scene, const Spline& spline) {
-    const double chord = chord_of(scene, spline);
-    return std::max(chord / 2, chord - rounding(spline, epsilon));
-}
-
 using Net = SampledNets::Net;
 using Corners = std::array<Index, 3>;
 
@@ -74,7 +67,7 @@ Vector cross(const Vector& a, const Vector& b) {
 /// Whether the triangles have no boundary: a volume's faces, or a surface that meets itself or ends
 /// in a point at all its ends.
 bool encloses(const SampledNets& s) {
-    if (s.nets.size() > 1) return true;
+    if (s.nets.size() != 1) return true;
     const GridIndex& grid = s.nets.front().grid;
     const auto vertex = [&](Index i) { return s.vertex[static_cast<std::size_t>(i)]; };
     for (std::size_t k : {0, 1}) {
@@ -110,16 +103,17 @@ class Facets {
         });
     }
     std::string finish(const std::string& title) {
-        if (content_.empty())
+        if (content_.size() == head_size)
             throw InvalidInput("an .stl holds facets, this spline has none: its points lie on a "
                                "line, or are one in single precision");
         std::string head = title;
-        head.resize(80, '\0');
-        put(static_cast<std::uint32_t>(content_.size() / facet_size), head);
-        return head + content_;
+        head.resize(head_size - sizeof(std::uint32_t), '\0');
+        put(static_cast<std::uint32_t>((content_.size() - head_size) / facet_size), head);
+        return std::move(content_.replace(0, head_size, head));
     }
 
   private:
+    static constexpr std::size_t head_size = 84;
     static constexpr std::size_t facet_size = 50;
 
     const Vector& place(Index i) const { return place_[static_cast<std::size_t>(i)]; }
@@ -166,7 +160,7 @@ class Facets {
 
     std::vector<Vector> place_;
     std::vector<std::array<float, 3>> rounded_;
-    std::string content_;
+    std::string content_ = std::string(head_size, '\0');
 };
 
 /// The largest distance that rounding moves a point of the scene's.
@@ -183,9 +177,11 @@ std::string stl_binary(const Scene& scene) {
     Facets facets;
     for (const Spline* spline : scene.splines()) {
         check_surface(*spline);
-        const double chord = chord_beside_rounding(scene, *spline);
-        facets.add(spline->axis_count() == 3 ? sampled_skin(*spline, skin_sampling(*spline, chord))
-                                             : sampled(*spline, sampling(*spline, chord)));
+        const double chord = chord_of(scene, *spline);
+        const double moved = rounding(drawn(*spline), epsilon);
+        facets.add(spline->axis_count() == 3
+                       ? sampled_skin(*spline, skin_sampling(*spline, chord, moved))
+                       : sampled(*spline, sampling(*spline, chord, moved)));
     }
     return facets.finish(
         fmt::format("batten, points rounded by up to {:.2g}", largest_rounding(scene)));

@@ -1,6 +1,9 @@
 #include <batten/io/svg.hpp>
 
+#include <batten/io/graph_scene.hpp>
+#include <batten/io/sampling.hpp>
 #include <batten/io/svg_parts.hpp>
+#include <batten/spline/graph.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -59,23 +62,26 @@ std::array<std::vector<double>, 4> bezier(const Spline& curve, Index span) {
     return {own[0], own[1], own[2], own[3]};
 }
 
+/// Chords within a twentieth of a pixel of the curve.
+std::string polyline(const Spline& curve, const Frame& frame) {
+    const PointSet points =
+        evaluate_grid(curve, sampling(curve, picture_chord(curve, 20 * picture_size)));
+    std::string path = "M " + frame.at(points(0, 0), points(0, 1));
+    for (Index i = points.size() > 1 ? 1 : 0; i < points.size(); ++i)
+        path += " L " + frame.at(points(i, 0), points(i, 1));
+    return path;
+}
+
 std::string curve_path(const Spline& curve, const Frame& frame) {
     const KnotVector& k = curve.axis(0);
+    if (k.degree() > 3) return polyline(curve, frame);
     std::string path;
     for (Index span = k.degree(); span < k.control_count(); ++span) {
         if (!(k[span + 1] > k[span])) continue;
-        if (k.degree() <= 3) {
-            const auto b = bezier(curve, span);
-            if (path.empty()) path = "M " + frame.at(b[0][0], b[0][1]);
-            path += fmt::format(" C {}, {}, {}", frame.at(b[1][0], b[1][1]),
-                                frame.at(b[2][0], b[2][1]), frame.at(b[3][0], b[3][1]));
-            continue;
-        }
-        constexpr int pieces = 32;
-        for (int s = path.empty() ? 0 : 1; s <= pieces; ++s) {
-            const auto point = curve(std::array{k[span] + (k[span + 1] - k[span]) * s / pieces});
-            path += (path.empty() ? "M " : " L ") + frame.at(point[0], point[1]);
-        }
+        const auto b = bezier(curve, span);
+        if (path.empty()) path = "M " + frame.at(b[0][0], b[0][1]);
+        path += fmt::format(" C {}, {}, {}", frame.at(b[1][0], b[1][1]), frame.at(b[2][0], b[2][1]),
+                            frame.at(b[3][0], b[3][1]));
     }
     return path;
 }
@@ -162,7 +168,8 @@ PointSet box_around(const Scene& scene, const std::vector<Tooth>& comb) {
 
 std::string svg_picture(const Scene& scene) {
     const Spline& curve = scene.spline;
-    if (curve.dim() < 2 || curve.dim() > 3)
+    if (is_function(curve)) return svg_picture(GraphScene(scene).scene());
+    if (curve.dim() > 3)
         throw InvalidInput(
             fmt::format("an .svg picture shows the plane or space, this spline is of dimension {}",
                         curve.dim()));
@@ -177,7 +184,8 @@ std::string svg_picture(const Scene& scene) {
     svg +=
         "  <style>\n"
         "    .samples { stroke: #e07b39; stroke-linecap: round; fill: none; }\n"
-        "    .curve { stroke: #1f4e79; stroke-width: 1.8; fill: none; stroke-linejoin: round; }\n"
+        "    .curve { stroke: #1f4e79; stroke-width: 1.8; fill: none; stroke-linejoin: round; "
+        "stroke-linecap: round; }\n"
         "    .polygon { stroke: #9aa5b1; stroke-width: 0.8; fill: none; stroke-dasharray: 4 3; }\n"
         "    .comb { stroke: #5a9367; stroke-width: 0.6; fill: none; }\n"
         "    .control { fill: #ffffff; stroke: #5c6b7a; stroke-width: 1; }\n"

@@ -1,7 +1,8 @@
 #include <batten/io/svg.hpp>
 
 #include <batten/core/vectors.hpp>
-#include <batten/io/sampling.hpp>
+#include <batten/io/cell_counts.hpp>
+#include <batten/io/sampled_nets.hpp>
 #include <batten/io/svg_parts.hpp>
 
 #include <algorithm>
@@ -17,8 +18,9 @@ using Vector = std::array<double, 3>;
 
 constexpr double picture_size = 900; // pixels of the longer side, margin apart
 constexpr double margin = 36;
-constexpr double head = 24;          // for the legend
-constexpr Index most_quads = 90;     // along an axis
+constexpr double head = 24;      // for the legend
+constexpr Index most_quads = 90; // along an axis
+constexpr double least_quads = 24;
 constexpr Index lines_per_face = 16; // iso-lines along an axis, at most
 
 Vector in_space(std::span<const double> p) {
@@ -74,41 +76,42 @@ struct Face {
     }
 };
 
-/// Evenly over the domain.
-std::vector<double> even(const KnotVector& axis, Index steps) {
-    std::vector<double> t;
-    for (Index i = 0; i <= steps; ++i)
-        t.push_back(axis.begin() +
-                    axis.length() * static_cast<double>(i) / static_cast<double>(steps));
-    return t;
-}
-
-Index steps_of(const KnotVector& axis) {
-    const auto spans = static_cast<Index>(axis.breakpoints().size()) - 1;
-    return std::clamp<Index>(6 * spans, 24, most_quads);
+/// The spline's own chords and 24 even steps; of more than fit a picture, as many of these.
+std::vector<double> places_of(const KnotVector& axis, const std::vector<Index>& cells) {
+    const std::vector<double> breaks = axis.breakpoints();
+    std::vector<double> fine{breaks.front()};
+    for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
+        const double part = (breaks[b + 1] - breaks[b]) / axis.length();
+        const auto even = static_cast<Index>(std::ceil(part * least_quads));
+        const Index pieces = std::max(even, cells[b]);
+        for (Index k = 1; k <= pieces; ++k)
+            fine.push_back(std::lerp(breaks[b], breaks[b + 1],
+                                     static_cast<double>(k) / static_cast<double>(pieces)));
+    }
+    const auto steps = static_cast<Index>(fine.size()) - 1;
+    if (steps <= most_quads) return fine;
+    std::vector<double> some;
+    for (Index i = 0; i <= most_quads; ++i)
+        some.push_back(fine[static_cast<std::size_t>(i * steps / most_quads)]);
+    return some;
 }
 
 std::vector<Face> faces_of(const Spline& spline) {
+    AxisPlaces places;
+    const CellCounts cells = least_cells(spline, picture_chord(spline));
+    for (std::size_t k = 0; k < cells.size(); ++k)
+        places.push_back(places_of(spline.axes()[k], cells[k]));
+    const SampledNets s =
+        spline.axis_count() == 2 ? sampled(spline, places) : sampled_skin(spline, places);
+    const PointSet points = s.all();
     std::vector<Face> faces;
-    const auto add = [&](std::vector<std::vector<double>> t, Index rows, Index columns) {
-        const PointSet points = evaluate_grid(spline, t);
-        Face face{rows, columns, {}};
-        for (Index i = 0; i < points.size(); ++i) face.points.push_back(in_space(points[i]));
+    for (const SampledNets::Net& net : s.nets) {
+        Face face{
+            net.grid.length(net.held == 0 ? 1 : 0), net.grid.length(net.held < 2 ? 2 : 1), {}};
+        for (Index i = 0; i < net.grid.size(); ++i)
+            face.points.push_back(in_space(points[net.first + i]));
         faces.push_back(std::move(face));
-    };
-    std::vector<std::vector<double>> all;
-    for (const KnotVector& axis : spline.axes()) all.push_back(even(axis, steps_of(axis)));
-    const auto size = [&](std::size_t k) { return static_cast<Index>(all[k].size()); };
-    if (all.size() == 2) {
-        add(all, size(0), size(1));
-        return faces;
     }
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (double t : {all[axis].front(), all[axis].back()}) {
-            std::vector<std::vector<double>> place = all;
-            place[axis] = {t};
-            add(place, size(axis == 0 ? 1 : 0), size(axis == 2 ? 1 : 2));
-        }
     return faces;
 }
 
@@ -154,10 +157,11 @@ void add_face(const Face& face, const View& view, std::vector<Piece>& pieces) {
 }
 
 std::string curve_svg(const Spline& curve, const View& view) {
-    const PointSet points = evaluate_grid(curve, sampling(curve, picture_chord(curve)));
-    std::string path;
-    for (Index i = 0; i < points.size(); ++i)
-        path += (i == 0 ? "M " : " L ") + view.at(in_space(points[i]));
+    const PointSet points =
+        evaluate_grid(curve, sampling(curve, picture_chord(curve, 20 * picture_size)));
+    std::string path = "M " + view.at(in_space(points[0]));
+    for (Index i = points.size() > 1 ? 1 : 0; i < points.size(); ++i)
+        path += " L " + view.at(in_space(points[i]));
     std::string polygon;
     const PointSet& control = curve.control_points();
     for (Index i = 0; i < control.size(); ++i)
@@ -195,7 +199,7 @@ std::string svg_projection(const Scene& scene) {
     if (spline.axis_count() > 1) faces = faces_of(spline);
     for (const Face& face : faces)
         for (const Vector& p : face.points) view.include(p);
-    if (spline.axis_count() == 1)
+    if (faces.empty())
         for (Index i = 0; i < spline.control_points().size(); ++i)
             view.include(in_space(spline.control_points()[i]));
     const bool dots = scene.samples != nullptr && scene.samples->dim() == spline.dim();
@@ -214,16 +218,22 @@ std::string svg_projection(const Scene& scene) {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.1f} {1:.1f}\" "
         "width=\"{0:.0f}\" height=\"{1:.0f}\">\n"
         "  <style>\n"
-        "    .iso {{ stroke: #1f4e79; stroke-width: 0.7; stroke-opacity: 0.75; fill: none; }}\n"
+        "    .iso {{ stroke: #1f4e79; stroke-width: 0.7; stroke-opacity: 0.75; fill: none; "
+        "stroke-linecap: round; }}\n"
         "    .dot {{ stroke-linecap: round; fill: none; }}\n"
-        "    .curve {{ stroke: #1f4e79; stroke-width: 1.8; fill: none; stroke-linejoin: round; }}\n"
+        "    .curve {{ stroke: #1f4e79; stroke-width: 1.8; fill: none; stroke-linejoin: round; "
+        "stroke-linecap: round; }}\n"
         "    .polygon {{ stroke: #9aa5b1; stroke-width: 0.8; fill: none; stroke-dasharray: 4 3; "
         "}}\n"
         "  </style>\n"
         "  <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
         width, height);
     if (!scene.title.empty()) svg += fmt::format("  <title>{}</title>\n", svg_escaped(scene.title));
-    if (spline.axis_count() == 1) svg += curve_svg(spline, view);
+    if (faces.empty()) svg += curve_svg(spline, view);
+    if (view.low == view.high) // one point
+        svg += fmt::format("  <path class=\"dot\" d=\"M {} h 0\" stroke=\"#1f4e79\" "
+                           "stroke-width=\"6\"/>\n",
+                           view.at(in_space(spline.control_points()[0])));
     svg += "  <g>\n";
     for (const Piece& piece : pieces) svg += piece.svg + "\n";
     svg += "  </g>\n";

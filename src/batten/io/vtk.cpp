@@ -1,4 +1,5 @@
 #include <batten/io/exchange_formats.hpp>
+#include <batten/io/graph_scene.hpp>
 #include <batten/io/sampled_nets.hpp>
 #include <batten/io/text_blocks.hpp>
 #include <batten/spline/graph.hpp>
@@ -52,8 +53,8 @@ class Cells {
         types_.push_back(type);
     }
     Index count() const { return static_cast<Index>(types_.size()); }
-    std::string text() const {
-        std::string text = "<Cells>\n";
+    void append(std::string& text) const {
+        text += "<Cells>\n";
         add_array(text, "Int64", "connectivity", count(), [&](Index i, fmt::memory_buffer& out) {
             const auto at = static_cast<std::size_t>(i);
             for (auto k = i > 0 ? ends_[at - 1] : 0; k < ends_[at]; ++k)
@@ -69,7 +70,7 @@ class Cells {
         };
         add_array(text, "Int64", "offsets", count(), each(ends_));
         add_array(text, "UInt8", "types", count(), each(types_));
-        return text + "</Cells>\n";
+        text += "</Cells>\n";
     }
 
   private:
@@ -133,20 +134,6 @@ void add_cells(Cells& cells, const GridIndex& grid, const std::vector<Index>& ve
     if (cells.count() == before) cells.add({at(0)}, Cells::vertex);
 }
 
-/// A function's samples over their parameters, where these are known; other samples as they are.
-PointSet drawn_samples(const Scene& scene) {
-    const Index axes = scene.spline.axis_count();
-    if (scene.samples == nullptr) return {0, axes};
-    if (!is_function(scene.spline)) return PointSet(scene.samples->points);
-    if (scene.parameters == nullptr) return {0, axes + 1};
-    PointSet points(scene.samples->size(), axes + 1);
-    for (Index i = 0; i < points.size(); ++i) {
-        std::ranges::copy(parameter_of(*scene.parameters, i), points[i].begin());
-        points(i, axes) = scene.samples->points(i, 0);
-    }
-    return points;
-}
-
 /// The values of a function, the last coordinates of its graph's points.
 void add_values(std::string& text, const PointSet& points) {
     add_array(text, "Float64", "value", points.size(), [&](Index i, fmt::memory_buffer& out) {
@@ -178,7 +165,8 @@ std::string vts_text(const Scene& scene) {
     }
     text += points_head;
     add_points(text, points);
-    return text + "</DataArray>\n</Points>\n</Piece>\n</StructuredGrid>\n</VTKFile>\n";
+    text += "</DataArray>\n</Points>\n</Piece>\n</StructuredGrid>\n</VTKFile>\n";
+    return text;
 }
 
 std::string vtu_text(const Scene& scene) {
@@ -216,8 +204,9 @@ std::string vtu_text(const Scene& scene) {
     text += points_head;
     add_points(text, points);
     text += "</DataArray>\n</Points>\n";
-    text += cells.text();
-    return text + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+    cells.append(text);
+    text += "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+    return text;
 }
 
 } // namespace batten

@@ -1,5 +1,8 @@
 #include <batten/report/html.hpp>
 
+#include <batten/io/graph_scene.hpp>
+#include <batten/spline/graph.hpp>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -39,18 +42,26 @@ std::string base64(const void* data, std::size_t bytes) {
     return out;
 }
 
-/// Coordinates relative to the centre, in single precision, little-endian as all who read pages
-/// are.
-std::string packed(const Points& points, const std::vector<double>& centre) {
+/// Where coordinates are drawn: relative to the centre, each times its factor.
+struct Stage {
+    std::vector<double> centre;
+    std::vector<double> stretch;
+    double at(double x, Index d) const {
+        const auto k = static_cast<std::size_t>(d);
+        return (x - centre[k]) * stretch[k];
+    }
+};
+
+/// Coordinates as they are drawn, in single precision, little-endian as all who read pages are.
+std::string packed(const Points& points, const Stage& stage) {
     std::vector<float> values;
     for (Index i = 0; i < points.size(); ++i)
         for (Index d = 0; d < points.dim(); ++d)
-            values.push_back(
-                static_cast<float>(points(i, d) - centre[static_cast<std::size_t>(d)]));
+            values.push_back(static_cast<float>(stage.at(points(i, d), d)));
     return base64(values.data(), values.size() * sizeof(float));
 }
 
-Json spline_data(const Spline& spline, const std::vector<double>& centre) {
+Json spline_data(const Spline& spline, const Stage& stage) {
     Json json;
     json["degree"] = Json::array();
     json["knots"] = Json::array();
@@ -60,7 +71,7 @@ Json spline_data(const Spline& spline, const std::vector<double>& centre) {
     }
     json["shape"] = spline.control_shape();
     json["dim"] = spline.dim();
-    json["control"] = packed(spline.control_points(), centre);
+    json["control"] = packed(spline.control_points(), stage);
     return json;
 }
 
@@ -76,13 +87,12 @@ std::vector<Index> shown_samples(Index count, Index most, Index worst) {
     return shown;
 }
 
-Json sample_data(const FitReport& report, const Scene& scene, Index most,
-                 const std::vector<double>& centre) {
-    const Points& points = scene.samples->points;
+Json sample_data(const FitReport& report, const Scene& scene, Index most, const Points& points,
+                 const Stage& stage) {
     Json json;
     if (points.size() <= most) {
         json["shown"] = nullptr;
-        json["samples"] = packed(points, centre);
+        json["samples"] = packed(points, stage);
         const std::vector<float> deviations(scene.deviations->begin(), scene.deviations->end());
         json["deviations"] = base64(deviations.data(), deviations.size() * sizeof(float));
         return json;
@@ -97,7 +107,7 @@ Json sample_data(const FitReport& report, const Scene& scene, Index most,
     }
     some = PointSet(std::move(some.values()), points.dim());
     json["shown"] = base64(indices.data(), indices.size() * sizeof(std::int32_t));
-    json["samples"] = packed(some, centre);
+    json["samples"] = packed(some, stage);
     json["deviations"] = base64(deviations.data(), deviations.size() * sizeof(float));
     return json;
 }
@@ -114,7 +124,7 @@ Json history_data(const FitReport& report) {
     return json;
 }
 
-Json frame_data(const FitReport& report, const Spline& spline, const std::vector<double>& centre) {
+Json frame_data(const FitReport& report, const Spline& spline, const Stage& stage) {
     Json frames = Json::array();
     const Index own = spline.free_control_points().size();
     for (const Frame& frame : report.frames)
@@ -122,12 +132,20 @@ Json frame_data(const FitReport& report, const Spline& spline, const std::vector
             frames.push_back(
                 {{"iteration", frame.iteration},
                  {"control",
-                  packed(Spline::from_free(spline.axes(), frame.control).control_points(),
-                         centre)}});
+                  packed(drawn(Spline::from_free(spline.axes(), frame.control)).control_points(),
+                         stage)}});
     if (!frames.empty())
         frames.push_back({{"iteration", report.iterations},
-                          {"control", packed(spline.control_points(), centre)}});
+                          {"control", packed(drawn(spline).control_points(), stage)}});
     return frames;
+}
+
+Stage stage_of(const PointSet& samples, const Spline& shown, bool function) {
+    const PointSet box = bounding_box(samples);
+    Stage stage;
+    for (Index d = 0; d < box.dim(); ++d) stage.centre.push_back((box(0, d) + box(1, d)) / 2);
+    stage.stretch = function ? picture_stretch(shown) : std::vector<double>(stage.centre.size(), 1);
+    return stage;
 }
 
 std::string plain_words(Termination termination) {
@@ -156,13 +174,17 @@ std::string for_page(const Json& json) {
 std::string html_page(const FitReport& report, const Scene& scene, const PageOptions& options) {
     if (scene.samples == nullptr || scene.deviations == nullptr)
         throw InvalidInput("a report page needs the samples and their deviations");
-    if (scene.spline.dim() > 3)
-        throw InvalidInput(fmt::format("a report page shows curves, surfaces and volumes in space, "
-                                       "this spline is of dimension {}",
-                                       scene.spline.dim()));
-    const PointSet box = bounding_box(scene.samples->points);
-    std::vector<double> centre;
-    for (Index d = 0; d < box.dim(); ++d) centre.push_back((box(0, d) + box(1, d)) / 2);
+    const bool function = is_function(scene.spline);
+    const Spline shown = drawn(scene.spline);
+    if (shown.dim() > 3)
+        throw InvalidInput(
+            fmt::format("a report page shows curves, surfaces and volumes in space and functions "
+                        "of one and two variables, this spline has {} axes in dimension {}",
+                        scene.spline.axis_count(), scene.spline.dim()));
+    const PointSet samples = drawn_samples(scene);
+    if (samples.empty())
+        throw InvalidInput("a report page of a function needs its samples' parameters");
+    const Stage stage = stage_of(samples, shown, function);
     const bool judged = report.tolerance > 0;
     Json data;
     data["title"] = scene.title;
@@ -179,11 +201,13 @@ std::string html_page(const FitReport& report, const Scene& scene, const PageOpt
     data["rms"] = report.deviation.rms;
     data["worst"] = report.deviation.worst_sample;
     data["count"] = scene.samples->size();
-    data["dim"] = scene.spline.dim();
-    data["centre"] = centre;
-    data.update(sample_data(report, scene, options.most_samples, centre));
-    data["spline"] = spline_data(scene.spline, centre);
-    data["frames"] = frame_data(report, scene.spline, centre);
+    data["dim"] = shown.dim();
+    data["graph"] = function;
+    data["centre"] = stage.centre;
+    data["stretch"] = stage.stretch;
+    data.update(sample_data(report, scene, options.most_samples, samples, stage));
+    data["spline"] = spline_data(shown, stage);
+    data["frames"] = frame_data(report, scene.spline, stage);
     data["history"] = history_data(report);
     const std::string_view page(batten_page_begin,
                                 static_cast<std::size_t>(batten_page_end - batten_page_begin));
