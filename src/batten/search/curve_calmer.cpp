@@ -29,7 +29,7 @@ double shown_roughness(const CurveTask& task) {
         const double second = 2 * bend / (before * after);
         sum += second * second * (before + after) / 2;
     }
-    const double length = t.back() - t.front();
+    const double length = task.closure == Closure::closed ? 1 : t.back() - t.front();
     return sum * length * length * length;
 }
 
