@@ -15,7 +15,7 @@ namespace batten {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<float>::epsilon() / 2;
+constexpr double epsilon = std::numeric_limits<float>::epsilon() / 2; // relative rounding
 
 void check_surface(const Spline& spline) {
     const bool height = is_function(spline) && spline.axis_count() == 2;
