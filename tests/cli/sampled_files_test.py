@@ -156,7 +156,7 @@ def to_spline(points, spline):
     piece = np.ravel_multi_index([i // n for i, n in zip(index, each)], [len(t) - 1 for t in breaks])
     by_piece = np.argsort(piece, kind="stable").reshape(piece.max() + 1, -1)
     square = ((dense.reshape(-1, control.shape[-1])[by_piece][None] - points[:, None, None]) ** 2).sum(axis=-1)
-    starts = min(6, square.shape[1])
+    starts = min(12, square.shape[1])  # tiny pieces crowd
     nearest = square.min(axis=2).argsort(axis=1)[:, :starts]
     start = by_piece[nearest, np.take_along_axis(square.argmin(axis=2), nearest, 1)].ravel()
     at = np.stack([inner[k][index[k][start]] for k in axes], axis=-1)
