@@ -148,19 +148,19 @@ def to_spline(points, spline):
     within each piece. A point of the spline proves it: it is never too small."""
     axes = range(len(spline["degree"]))
     control = control_points(spline)
-    each = 40 if len(axes) == 1 else 20
     breaks = [places(spline, k, 1) for k in axes]
-    inner = [np.concatenate([a + (b - a) * (np.arange(each) + 0.5) / each for a, b in zip(t, t[1:])]) for t in breaks]
+    each = [max(40 if len(axes) == 1 else 20, 100 // (len(t) - 1)) for t in breaks]
+    inner = [np.concatenate([a + (b - a) * (np.arange(n) + 0.5) / n for a, b in zip(t, t[1:])]) for t, n in zip(breaks, each)]
     dense = evaluate(spline, *inner)
     index = [i.ravel() for i in np.indices(dense.shape[:-1])]
-    piece = np.ravel_multi_index([i // each for i in index], [len(t) - 1 for t in breaks])
+    piece = np.ravel_multi_index([i // n for i, n in zip(index, each)], [len(t) - 1 for t in breaks])
     by_piece = np.argsort(piece, kind="stable").reshape(piece.max() + 1, -1)
     square = ((dense.reshape(-1, control.shape[-1])[by_piece][None] - points[:, None, None]) ** 2).sum(axis=-1)
-    starts = min(6, square.shape[1])
+    starts = min(12, square.shape[1])  # tiny pieces crowd
     nearest = square.min(axis=2).argsort(axis=1)[:, :starts]
     start = by_piece[nearest, np.take_along_axis(square.argmin(axis=2), nearest, 1)].ravel()
     at = np.stack([inner[k][index[k][start]] for k in axes], axis=-1)
-    low, high = (np.stack([breaks[k][index[k][start] // each + end] for k in axes], axis=-1) for end in (0, 1))
+    low, high = (np.stack([breaks[k][index[k][start] // each[k] + end] for k in axes], axis=-1) for end in (0, 1))
     points = np.repeat(points, starts, axis=0)
     point = lambda at, derived=None: scattered(spline, at, derived)
     away, damping = np.linalg.norm(points - point(at), axis=-1), np.full(len(points), 1e-3)

@@ -75,21 +75,11 @@ void join_edge(const Net& a, const Net& b, Vertices& vertices) {
     }
 }
 
-/// The spline with its control points relative to the middle of their box: small numbers are
-/// rounded little.
-Spline about_centre(const Spline& spline, std::vector<double>& centre) {
-    const PointSet box = bounding_box(spline.control_points());
-    PointSet control = spline.control_points();
-    for (Index d = 0; d < box.dim(); ++d) {
-        centre.push_back(box(0, d) / 2 + box(1, d) / 2);
-        for (Index i = 0; i < control.size(); ++i) control(i, d) -= centre.back();
-    }
-    return {spline.axes(), std::move(control)};
-}
-
 /// Evaluates the nets of `result`, whose places are `held` or all, and finds the vertices.
 void fill(const Spline& spline, SampledNets& result) {
-    const Spline local = about_centre(drawn(spline), result.centre);
+    const Spline shown = drawn(spline);
+    result.centre = centre_of(shown);
+    const Spline local = about(shown, result.centre);
     std::vector<double> values;
     for (const Net& net : result.nets) {
         AxisPlaces places = result.places;
@@ -110,7 +100,8 @@ void fill(const Spline& spline, SampledNets& result) {
             if (&other > &net) join_edge(net, other, vertices);
         for (std::size_t k = 0; k < result.places.size(); ++k) {
             if (k == net.held) continue;
-            if (meets_itself(spline, static_cast<Index>(k))) join_ends(net, k, vertices);
+            if (!is_function(spline) && meets_itself(local, static_cast<Index>(k)))
+                join_ends(net, k, vertices);
             join_neighbours(net, k, result.points, apart, vertices);
         }
     }

@@ -140,9 +140,10 @@ AxisPlaces sampling(const Spline& spline, double chord, double moved) {
         for (const KnotVector& axis : spline.axes()) one.push_back({axis.begin()});
         return one;
     }
-    CellCounts cells = enclosing_cells(spline, part, same_point_distance(spline));
+    const Spline local = about(spline, centre_of(spline));
+    CellCounts cells = enclosing_cells(local, part, same_point_distance(spline));
     if (spline.axis_count() == 3) {
-        const CellCounts skin = skin_cells(spline, part);
+        const CellCounts skin = skin_cells(local, part);
         for (std::size_t k = 0; k < 3; ++k) raise(cells[k], skin[k]);
     }
     double points = 1;
@@ -151,15 +152,32 @@ AxisPlaces sampling(const Spline& spline, double chord, double moved) {
 }
 
 AxisPlaces skin_sampling(const Spline& volume, double chord, double moved) {
-    const CellCounts cells = skin_cells(volume, after_rounding(volume, chord, moved));
+    const CellCounts cells =
+        skin_cells(about(volume, centre_of(volume)), after_rounding(volume, chord, moved));
     double points = 0;
     for (std::size_t k = 0; k < 3; ++k)
         points += 2 * points_along(cells[(k + 1) % 3]) * points_along(cells[(k + 2) % 3]);
     return places_of(volume, cells, points, chord);
 }
 
+std::vector<double> centre_of(const Spline& spline) {
+    const PointSet box = bounding_box(spline.control_points());
+    std::vector<double> centre;
+    for (Index d = 0; d < box.dim(); ++d) centre.push_back(box(0, d) / 2 + box(1, d) / 2);
+    return centre;
+}
+
+Spline about(const Spline& spline, const std::vector<double>& centre) {
+    PointSet control = spline.control_points();
+    for (Index i = 0; i < control.size(); ++i)
+        for (std::size_t d = 0; d < centre.size(); ++d)
+            control(i, static_cast<Index>(d)) -= centre[d];
+    return {spline.axes(), std::move(control)};
+}
+
 bool meets_itself(const Spline& spline, Index axis) {
-    return !is_function(spline) && closes(spline, axis, same_point_distance(spline));
+    return !is_function(spline) &&
+           closes(about(spline, centre_of(spline)), axis, same_point_distance(spline));
 }
 
 double same_point_distance(const Spline& spline) {

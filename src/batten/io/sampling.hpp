@@ -22,6 +22,12 @@ AxisPlaces sampling(const Spline& spline, double chord, double moved = 0);
 /// Parameters so dense that this holds for the six faces of a volume.
 AxisPlaces skin_sampling(const Spline& volume, double chord, double moved = 0);
 
+/// The middle of the control points' box.
+std::vector<double> centre_of(const Spline& spline);
+
+/// The spline with its control points relative to a point: small numbers are rounded little.
+Spline about(const Spline& spline, const std::vector<double>& centre);
+
 /// Whether the spline's two ends along the axis are one: a closed axis, or ends that coincide. The
 /// graph of a function has two ends everywhere.
 bool meets_itself(const Spline& spline, Index axis);
