@@ -12,10 +12,9 @@ struct WithoutOutliers {
 };
 
 /// Sets samples aside that are off beyond the tolerance (or 1e-4 of the data's size where none is
-/// stated) and: of a curve or grid, that disagree with their neighbours (neighbour_outliers.hpp);
-/// of a cloud, that are far from a robust fit to all (robust_fit.hpp), beyond six times the
-/// residuals' scale and five times what most around them are. Samples with something to hold never
-/// are.
+/// stated) and disagree with their neighbours: of a curve or grid along its axes
+/// (neighbour_outliers.hpp), of a cloud around them (cloud_outliers.hpp). Samples with something to
+/// hold never are.
 WithoutOutliers without_outliers(const Problem& problem);
 
 } // namespace batten
