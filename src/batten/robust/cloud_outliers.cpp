@@ -119,7 +119,7 @@ struct CloudJudge {
             values.push_back(far * std::max(0.0, there.residual - tenth * largest * there.gain));
             add_scaled(sum.data(), far, off.data(), static_cast<Index>(dim));
         }
-        if (values.empty()) return 0;
+        if (values.empty()) return std::numeric_limits<double>::infinity(); // nobody knows
         const double mean = norm(sum) / static_cast<double>(values.size());
         return std::max(4 * median(std::move(values)), 2 * mean);
     }

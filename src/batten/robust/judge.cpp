@@ -126,7 +126,7 @@ double Judge::smooth_residual(Index sample, std::size_t axis, const Stencil& ste
         add_scaled(sum.data(), far, off.data(), static_cast<Index>(dim));
         if (values.size() == 3) mean = norm(sum) / 3; // before, or the nearest of one side
     }
-    if (values.empty()) return 0;
+    if (values.empty()) return std::numeric_limits<double>::infinity(); // nobody knows
     mean = std::max(mean, norm(sum) / static_cast<double>(values.size()));
     return std::max(4 * median(std::move(values)), 2 * mean);
 }
