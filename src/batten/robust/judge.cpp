@@ -1,5 +1,6 @@
 #include <batten/robust/judge.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/samples/noise.hpp>
 
 #include <algorithm>
@@ -9,146 +10,173 @@ namespace batten {
 
 namespace {
 
-/// The value with that part of the finite ones below it, 0 of none.
-double quantile(std::vector<double> values, double part) {
-    std::erase_if(values, [](double x) { return !std::isfinite(x); });
-    if (values.empty()) return 0;
+constexpr std::array to_both{closest,          Stencil{4, 4, 3}, Stencil{3, 3, 2},
+                             Stencil{8, 8, 3}, Stencil{1, 2, 2}, Stencil{2, 1, 2},
+                             Stencil{1, 4, 3}, Stencil{4, 1, 3}};
+constexpr std::array before{Stencil{2, 0, 1}, Stencil{4, 0, 1}, Stencil{8, 0, 1},
+                            Stencil{3, 0, 2}, Stencil{5, 0, 2}, Stencil{8, 0, 2},
+                            Stencil{8, 0, 3}, Stencil{16, 0, 2}};
+
+constexpr auto mirrored(auto stencils) {
+    for (Stencil& s : stencils) std::swap(s.before, s.behind);
+    return stencils;
+}
+
+constexpr std::array behind = mirrored(before);
+
+/// The value with that part of the others below it; orders them anew.
+double quantile(std::vector<double>& values, double part) {
     const auto at =
         values.begin() + static_cast<Index>(part * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
 
-/// What noise does to a stencil's residual nine times out of ten, in medians of the closest one's.
-double noise_factor(const Stencil& stencil) {
-    if (!stencil.one_sided()) return 2.5;
-    return stencil.before + stencil.behind == 3 ? 7.5 : 4;
+/// Up to `count` trusted samples on each side asked for.
+std::vector<Index> around(const Trusted& trusted, Index sample, std::size_t axis, Index count,
+                          bool first = true, bool second = true) {
+    std::vector<Index> result(static_cast<std::size_t>(2 * count));
+    const auto room = std::span(result);
+    Index found = 0;
+    for (Index side : {-1, 1})
+        if (side < 0 ? first : second)
+            found += trusted.nearest(
+                sample, axis, side,
+                room.subspan(static_cast<std::size_t>(found), static_cast<std::size_t>(count)));
+    result.resize(static_cast<std::size_t>(found));
+    return result;
 }
 
 } // namespace
 
-std::vector<double> residuals(const Trusted& trusted, const Stencil& stencil) {
-    std::vector<double> result(static_cast<std::size_t>(trusted.size()));
-    for_each_block(trusted.size(), 4096, [&](const Block& block) {
-        for (Index i = block.begin; i < block.end; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            result[k] = trusted.predict(trusted.members()[k], {i - 1, i + 1}, stencil).residual;
-        }
-    });
-    return result;
+UsualResidual::UsualResidual(std::vector<double> residuals) {
+    std::erase_if(residuals, [](double x) { return !std::isfinite(x); });
+    if (residuals.empty()) return;
+    median = quantile(residuals, 0.5);
+    largest = median + 6 * (quantile(residuals, 0.84) - median);
+    largest = std::clamp(largest, 3.9 * median, 7.5 * median);
 }
 
-double finite_median(std::vector<double> values) {
-    std::erase_if(values, [](double x) { return !std::isfinite(x); });
-    return median(std::move(values));
+double Judge::usual_around(Index sample, std::size_t axis) const {
+    std::vector<double> values;
+    for (Index beside : around(trusted_, sample, axis, 16))
+        if (const Prediction there = trusted_.predict(beside, axis, closest); there.exists())
+            values.push_back(there.normal());
+    const UsualResidual& usual = usual_[axis];
+    return std::max(usual.largest, 0.7 * usual.ratio() * median(std::move(values)));
 }
 
-double median_around(const std::vector<double>& values, const Trusted& trusted, Index place) {
-    std::vector<double> window;
-    for (Index k = -10; k <= 10; ++k)
-        if (const Index at = trusted.within(place + k * trusted.stride()); at >= 0)
-            window.push_back(values[static_cast<std::size_t>(at)]);
-    return finite_median(std::move(window));
-}
-
-Scale::Scale(const Trusted& trusted) : around_(static_cast<std::size_t>(trusted.size())) {
-    std::vector<double> least = residuals(trusted, closest);
-    noise_ = finite_median(least);
-    const std::vector<double> wide = residuals(trusted, central[1]);
-    for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], wide[i]);
-    // of normal residuals along a line, in a plane or in space this is 5.3, 5.8 or 6.1 times their
-    // standard deviation
-    const double half = quantile(least, 0.5);
-    usual_ = half + 6 * (quantile(least, 0.84) - half);
-    for_each_block(trusted.size(), 4096, [&](const Block& block) {
-        for (Index i = block.begin; i < block.end; ++i)
-            around_[static_cast<std::size_t>(i)] = 7 * median_around(least, trusted, i);
-    });
-}
-
-double Scale::usual(const Trusted& trusted, const Gap& gap) const {
-    double result = usual_;
-    for (Index place : {gap.before, gap.behind})
-        if (const Index at = trusted.within(place); at >= 0)
-            result = std::max(result, around_[static_cast<std::size_t>(at)]);
-    return result;
-}
-
-double Judge::part(Index sample) const {
-    const Gap gap = trusted_.gap(sample);
-    double best = std::numeric_limits<double>::infinity();
-    const auto by = [&](std::span<const Stencil> stencils) {
-        for (const Stencil& stencil : stencils)
-            best = std::min(best, by_stencil(sample, gap, stencil));
-    };
-    by(central);
-    if (best > 1) by(lopsided);
-    if (best > 1 && breaks(gap, usual_[static_cast<std::size_t>(sample)]))
-        by(std::span(one_sided).subspan(trusted_.stride() > 1 ? 4 : 0)); // few say nothing in noise
+Judge::Verdict Judge::of(Index sample) const {
+    std::vector<Verdict> by;
+    for (std::size_t axis = 0; axis < trusted_.axis_count(); ++axis) {
+        const double usual = usual_around(sample, axis);
+        for (std::span<const Stencil> stencils :
+             {std::span<const Stencil>(to_both), std::span<const Stencil>(before),
+              std::span<const Stencil>(behind)})
+            by.push_back(most_certain(sample, axis, stencils, usual));
+    }
+    const double certain = 2 * std::ranges::min(by, {}, &Verdict::limit).limit;
+    Verdict best;
+    for (const Verdict& one : by)
+        if (one.limit <= certain && one.part < best.part) best = one;
+    if (!std::isfinite(certain)) best.part = 0;
     return best;
 }
 
-bool Judge::unresolved(Index sample) const {
-    const Gap gap = trusted_.gap(sample);
-    const double here = std::min(trusted_.least_residual(sample, central),
-                                 trusted_.least_residual(sample, lopsided));
-    if (!at_end(gap) && std::isfinite(here)) {
-        double worst = 0;
-        for (Index beside : trusted_.around(gap, 1, true, true))
-            if (const double r = trusted_.least_residual(beside, central); std::isfinite(r))
-                worst = std::max(worst, r);
-        return here <= 4 * worst;
-    }
-    return trusted_.stride() == 1 &&
-           std::min(here, trusted_.least_residual(sample, one_sided)) <= 0.3 * step(gap);
+Judge::Verdict Judge::most_certain(Index sample, std::size_t axis,
+                                   std::span<const Stencil> stencils, double usual) const {
+    Verdict best;
+    for (const Stencil& stencil : stencils)
+        if (const Verdict one = by_stencil(sample, axis, stencil, usual); one.limit < best.limit)
+            best = one;
+    return best;
 }
 
-double Judge::by_stencil(Index sample, const Gap& gap, const Stencil& stencil) const {
-    const Prediction here = trusted_.predict(sample, gap, stencil);
-    // beside a corner one side alone has less to go by
-    const double spread = stencil.one_sided() ? 2 : 1;
-    const double usual = spread * usual_[static_cast<std::size_t>(sample)];
-    if (!here.exists() || here.residual <= usual || stencil.degree == 1)
-        return here.residual / usual;
-    return here.residual / std::max(usual, smooth_residual(gap, stencil, here.reach));
+Judge::Verdict Judge::by_stencil(Index sample, std::size_t axis, const Stencil& stencil,
+                                 double usual) const {
+    const Prediction here = trusted_.predict(sample, axis, stencil);
+    if (!here.exists()) return {};
+    const double limit =
+        std::max(least_[static_cast<std::size_t>(sample)],
+                 usual * here.gain + smooth_residual(sample, axis, stencil, here.reach));
+    Verdict result{0, limit, axis, stencil};
+    if (here.residual > 0) result.part = here.residual / limit;
+    return result;
 }
 
-/// Four times what smooth samples beside it have, beyond noise, if the stencil reached as far.
-double Judge::smooth_residual(const Gap& gap, const Stencil& stencil, double reach) const {
+/// What smooth samples beside it are off if the stencil reached as far: four times what most of
+/// them are beyond noise, or twice what all, or the nearest, are on the average, for noise has
+/// none.
+double Judge::smooth_residual(Index sample, std::size_t axis, const Stencil& stencil,
+                              double reach) const {
+    constexpr double tenth = 0.45; // of the largest one: a tenth of normal residuals are above it
+    const auto dim = static_cast<std::size_t>(trusted_.points().dim());
     std::vector<double> values;
-    for (Index beside : trusted_.around(gap, 4, stencil.before > 0, stencil.behind > 0)) {
-        const Prediction there = trusted_.predict(beside, stencil);
+    std::vector<double> off(dim);
+    std::vector<double> sum(dim, 0);
+    double mean = 0;
+    const Index side = stencil.one_sided() ? 6 : 3;
+    for (Index beside :
+         around(trusted_, sample, axis, side, stencil.before > 0, stencil.behind > 0)) {
+        const Prediction there = trusted_.predict(beside, axis, stencil, off);
         if (!there.exists()) continue;
-        const double beyond = std::max(0.0, there.residual - noise_factor(stencil) * noise_);
-        values.push_back(there.reach > 0 ? beyond * std::max(1.0, reach / there.reach) : beyond);
+        const double far = there.reach > 0 ? std::max(1.0, reach / there.reach) : 1;
+        values.push_back(far *
+                         std::max(0.0, there.residual - tenth * usual_[axis].largest * there.gain));
+        add_scaled(sum.data(), far, off.data(), static_cast<Index>(dim));
+        if (values.size() == 3) mean = norm(sum) / 3; // before, or the nearest of one side
     }
-    return 4 * median(std::move(values));
+    if (values.empty()) return std::numeric_limits<double>::infinity(); // nobody knows
+    mean = std::max(mean, norm(sum) / static_cast<double>(values.size()));
+    return std::max(4 * median(std::move(values)), 2 * mean);
 }
 
-bool Judge::at_end(const Gap& gap) const {
-    return trusted_.within(gap.before) < 0 || trusted_.within(gap.behind) < 0;
+bool Judge::unresolved(Index sample, std::size_t axis, Index run) const {
+    double off = std::numeric_limits<double>::infinity();
+    const auto least = [&](Index i, std::span<const Stencil> stencils) {
+        double normal = std::numeric_limits<double>::infinity();
+        for (const Stencil& stencil : stencils) {
+            const Prediction by = trusted_.predict(i, axis, stencil);
+            normal = std::min(normal, by.normal());
+            if (i == sample) off = std::min(off, by.residual);
+        }
+        return normal;
+    };
+    const auto across = std::span(to_both).first(3);
+    double here = least(sample, across);
+    if (!std::isfinite(here)) here = least(sample, to_both);
+    const bool inside = !at_end(sample, axis) && std::isfinite(here);
+    if (inside) {
+        double worst = 0;
+        for (Index beside : around(trusted_, sample, axis, 2))
+            if (const double r = least(beside, across); std::isfinite(r))
+                worst = std::max(worst, r);
+        if (here <= 3 * worst) return true;
+    } else {
+        least(sample, before);
+        least(sample, behind);
+    }
+    if (!trusted_.by_chords(axis) || trusted_.axis_count() > 1) return false;
+    const double usual_step = step(sample, axis);
+    if (usual_[axis].median > 0.01 * usual_step) return false; // there is noise to be seen
+    return off <= (run > 2 ? 1.5 : run > 1 || !inside ? 0.3 : 0.07) * usual_step;
 }
 
-/// Whether the curve's two sides do not know of each other: only there is one of them enough to
-/// explain a sample.
-bool Judge::breaks(const Gap& gap, double usual) const {
-    return at_end(gap) ||
-           std::ranges::any_of(trusted_.around(gap, 1, true, true), [&](Index beside) {
-               return trusted_.predict(beside, closest).residual > 0.7 * usual;
-           });
+bool Judge::at_end(Index sample, std::size_t axis) const {
+    std::array<Index, 1> found{};
+    return trusted_.nearest(sample, axis, -1, found) == 0 ||
+           trusted_.nearest(sample, axis, 1, found) == 0;
 }
 
-/// Median step of the trusted samples about a gap.
-double Judge::step(const Gap& gap) const {
-    const Points& q = trusted_.sequence();
-    const std::vector<Index>& member = trusted_.members();
+/// Median step of the trusted samples about a sample.
+double Judge::step(Index sample, std::size_t axis) const {
     std::vector<double> steps;
-    for (Index k = -3; k < 3; ++k) {
-        const Index a = trusted_.within(gap.before + k);
-        const Index b = trusted_.within(gap.before + k + 1);
-        if (a >= 0 && b >= 0)
-            steps.push_back(distance(q[member[static_cast<std::size_t>(a)]],
-                                     q[member[static_cast<std::size_t>(b)]]));
+    for (Index side : {-1, 1}) {
+        std::array<Index, 4> found{};
+        const Index count = trusted_.nearest(sample, axis, side, found);
+        for (Index k = 0; k + 1 < count; ++k)
+            steps.push_back(distance(trusted_.points()[found[static_cast<std::size_t>(k)]],
+                                     trusted_.points()[found[static_cast<std::size_t>(k + 1)]]));
     }
     return median(std::move(steps));
 }

@@ -2,69 +2,62 @@
 
 #include <batten/robust/neighbours.hpp>
 
-#include <array>
-
 namespace batten {
 
-/// The stencils that samples are judged by: to both sides alike, to both sides in need, and to one
-/// side where the curve breaks or ends.
+/// By the two samples next to it on both sides.
 inline constexpr Stencil closest{2, 2, 3};
-inline constexpr std::array central{closest, Stencil{4, 4, 3}};
-inline constexpr std::array lopsided{Stencil{1, 2, 2}, Stencil{2, 1, 2}, Stencil{1, 4, 3},
-                                     Stencil{4, 1, 3}};
-inline constexpr std::array one_sided{Stencil{3, 0, 2}, Stencil{0, 3, 2}, Stencil{2, 0, 1},
-                                      Stencil{0, 2, 1}, Stencil{5, 0, 2}, Stencil{0, 5, 2},
-                                      Stencil{4, 0, 1}, Stencil{0, 4, 1}};
 
-/// Residuals of the trusted samples, in their order.
-std::vector<double> residuals(const Trusted& trusted, const Stencil& stencil);
+/// What residuals are where all is usual, of trusted samples by the closest ones, in units of a
+/// sample's noise.
+struct UsualResidual {
+    double median = 0;
+    /// The largest one: of normal noise along a line, in a plane or in space 5.1, 5.6 or 5.9
+    /// standard deviations.
+    double largest = 0;
 
-/// Median of the finite values up to ten strides from a place, its own included.
-double median_around(const std::vector<double>& values, const Trusted& trusted, Index place);
-
-/// The median of the values that are finite.
-double finite_median(std::vector<double> values);
-
-/// What residuals are among trusted samples.
-class Scale {
-  public:
-    explicit Scale(const Trusted& trusted);
-
-    /// The largest residual of a usual sample at a gap.
-    double usual(const Trusted& trusted, const Gap& gap) const;
-    /// Median residual by the closest neighbours.
-    double noise() const { return noise_; }
-
-  private:
-    std::vector<double> around_;
-    double usual_ = 0;
-    double noise_ = 0;
+    /// Of the residuals that exist among these.
+    explicit UsualResidual(std::vector<double> residuals);
+    double ratio() const { return median > 0 ? largest / median : 1; }
 };
 
 /// Says whether trusted neighbours explain a sample.
 class Judge {
   public:
-    /// `usual`: the residual that each sample may have in any case.
-    Judge(const Trusted& trusted, const std::vector<double>& usual, double noise)
-        : trusted_(trusted), usual_(usual), noise_(noise) {}
+    /// `usual`: per axis. `least`: what each sample may be off in any case.
+    Judge(const Trusted& trusted, const std::vector<UsualResidual>& usual,
+          const std::vector<double>& least)
+        : trusted_(trusted), usual_(usual), least_(least) {}
 
-    /// Its residual by the stencil that explains it best, as a part of what it may be.
-    double part(Index sample) const;
+    struct Verdict {
+        double part = std::numeric_limits<double>::infinity();  ///< the residual in limits
+        double limit = std::numeric_limits<double>::infinity(); ///< how far off it might be
+        std::size_t axis = 0;
+        Stencil by{};
+    };
 
-    /// Whether a sample that nothing explains may be a bend's own: its neighbours are as badly
-    /// predicted without it, or, at an end, it is off by less than a third of a step.
-    bool unresolved(Index sample) const;
+    /// By the stencils that are most certain, of those along each axis to both sides, before the
+    /// sample and behind it: the one that explains it best of those that are about as certain.
+    /// Above 1 it is not explained; a sample without neighbours is.
+    Verdict of(Index sample) const;
+
+    /// Whether a sample that nothing explains may be a bend's own: along an axis its neighbours are
+    /// as badly predicted without it, or no noise is to be seen and it is off by a small part of a
+    /// step, at an end or in a pair less than a third, in a longer `run` less than one and a half.
+    bool unresolved(Index sample, std::size_t axis, Index run) const;
 
   private:
-    double by_stencil(Index sample, const Gap& gap, const Stencil& stencil) const;
-    double smooth_residual(const Gap& gap, const Stencil& stencil, double reach) const;
-    bool at_end(const Gap& gap) const;
-    bool breaks(const Gap& gap, double usual) const;
-    double step(const Gap& gap) const;
+    Verdict by_stencil(Index sample, std::size_t axis, const Stencil& stencil, double usual) const;
+    Verdict most_certain(Index sample, std::size_t axis, std::span<const Stencil> stencils,
+                         double usual) const;
+    double smooth_residual(Index sample, std::size_t axis, const Stencil& stencil,
+                           double reach) const;
+    double usual_around(Index sample, std::size_t axis) const;
+    bool at_end(Index sample, std::size_t axis) const;
+    double step(Index sample, std::size_t axis) const;
 
     const Trusted& trusted_;
-    const std::vector<double>& usual_;
-    double noise_;
+    const std::vector<UsualResidual>& usual_;
+    const std::vector<double>& least_;
 };
 
 } // namespace batten

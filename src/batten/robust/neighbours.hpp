@@ -2,6 +2,7 @@
 
 #include <batten/core/core.hpp>
 
+#include <array>
 #include <limits>
 #include <span>
 #include <vector>
@@ -9,11 +10,13 @@
 namespace batten {
 
 /// Neighbours that tell where a sample of a sequence should be: so many before it, so many behind
-/// it, at most 8, and the degree of their least-squares polynomial over the chords between them.
+/// it, the degree of their least-squares polynomial along the sequence, and how many that are still
+/// nearer are not asked.
 struct Stencil {
     Index before;
     Index behind;
     int degree;
+    Index skipped = 0;
 
     bool one_sided() const { return before == 0 || behind == 0; }
 };
@@ -22,62 +25,66 @@ struct Stencil {
 struct Prediction {
     /// Infinite where the sequence ends too soon.
     double residual = std::numeric_limits<double>::infinity();
+    /// Standard deviation of the residual in parts of that of white noise.
+    double gain = 1;
     /// The next orthogonal polynomial over the neighbours, at the sample: what the residual of a
     /// smooth curve grows with, of an interpolant the product of the distances along the curve
     /// [Forsythe1957].
     double reach = 0;
 
     bool exists() const { return residual < std::numeric_limits<double>::infinity(); }
+    /// In units of a sample's noise.
+    double normal() const { return residual / gain; }
 };
 
-/// Places among the trusted samples: the last before a sample and the first behind it, perhaps
-/// beyond an end.
-struct Gap {
-    Index before;
-    Index behind;
-};
-
-/// Samples of a sequence that are trusted, and what they say of each other and of the rest. The
-/// same from either end: nothing is counted along the sequence.
+/// Samples of a sequence or grid that are trusted, and what they say of each other and of the rest,
+/// along each axis. The same from either end: nothing is counted along the sequence.
 class Trusted {
   public:
-    /// Of a sequence without repetitions; the k-th neighbour is k times `stride` samples away, the
-    /// mean of those up to half a stride from there.
-    Trusted(Points sequence, Closure closure, Index stride);
+    static constexpr Index most_neighbours = 32;
 
-    /// Takes the samples that are not `left_out`.
-    void take(const std::vector<bool>& left_out);
+    /// All samples. `along`, per axis: each sample's place along it, ascending and over one period
+    /// where closed; empty: chord lengths between the neighbours that are asked.
+    Trusted(Points points, GridIndex grid, std::vector<Closure> closures,
+            std::vector<std::vector<double>> along);
 
-    /// Median distance of neighbours a stride apart.
-    double usual_step() const;
+    void place_along(std::size_t axis, std::vector<double> along);
+    void take(Index sample) { trusted_[static_cast<std::size_t>(sample)] = 1; }
+    void leave_out(const std::vector<Index>& samples);
 
-    Index size() const { return static_cast<Index>(members_.size()); }
-    Index stride() const { return stride_; }
-    const Points& sequence() const { return sequence_; }
-    const std::vector<Index>& members() const { return members_; }
-    /// The places about a sample, trusted or not, that its neighbours are counted from.
-    Gap gap(Index sample) const;
-    /// A place that may be beyond an end: wrapped where closed, else -1.
-    Index within(Index place) const;
-    /// The trusted samples 0, 1, ... `count` - 1 strides away from a gap on the sides asked for.
-    std::vector<Index> around(const Gap& gap, Index count, bool before, bool behind) const;
+    const Points& points() const { return points_; }
+    const GridIndex& grid() const { return grid_; }
+    Index size() const { return points_.size(); }
+    std::size_t axis_count() const { return grid_.axis_count(); }
+    Closure closure(std::size_t axis) const { return closures_[axis]; }
+    bool by_chords(std::size_t axis) const { return along_[axis].empty(); }
+    bool trusts(Index sample) const { return trusted_[static_cast<std::size_t>(sample)] != 0; }
+    /// The sample so many steps away along an axis, -1 beyond an end.
+    Index beside(Index sample, std::size_t axis, Index steps) const;
+    /// The nearest trusted samples along an axis to one side, nearest first; fewer where it ends.
+    /// `step`: 1 behind the sample, -1 before it.
+    Index nearest(Index sample, std::size_t axis, Index step, std::span<Index> found) const;
+    /// Whether one of the next `count` samples along any axis is trusted.
+    bool within(Index sample, Index count) const;
 
-    /// Of a sample, by trusted ones beside it.
-    Prediction predict(Index sample, const Gap& gap, const Stencil& stencil) const;
-    Prediction predict(Index sample, const Stencil& stencil) const {
-        return predict(sample, gap(sample), stencil);
-    }
-    /// The least residual by any of the stencils.
-    double least_residual(Index sample, std::span<const Stencil> stencils) const;
+    /// Of a sample, by trusted ones beside it along an axis; `off`, if given, becomes the way from
+    /// the sample to where they have it.
+    Prediction predict(Index sample, std::size_t axis, const Stencil& stencil,
+                       std::span<double> off = {}) const;
 
   private:
-    bool neighbour(Index place, std::span<double> point) const;
+    struct Line;
+    bool line(Index sample, std::size_t axis, const Stencil& stencil, Line& line) const;
+    void by_chords(Index sample, std::size_t axis, const Stencil& stencil, Line& line) const;
+    Index position(Index sample, std::size_t axis) const {
+        return sample / grid_.stride(axis) % grid_.length(axis);
+    }
 
-    Points sequence_;
-    Closure closure_;
-    Index stride_;
-    std::vector<Index> members_;
-    PointSet sums_; ///< of the members before a place, from the first sample on; of strides only
+    Points points_;
+    GridIndex grid_;
+    std::vector<Closure> closures_;
+    std::vector<std::vector<double>> along_;
+    std::vector<char> trusted_;
 };
 
 } // namespace batten

@@ -1,0 +1,228 @@
+"""Outliers that were planted by seed are set aside and nothing else is: curves, heights and clouds, anywhere, with a size, a tolerance and smoothing.
+
+What is generated: smooth shapes with 10 or more samples to each bend, everywhere the same normal noise, at least a quarter of what a parabola through the
+next three samples misses of the clean shape (else nobody could tell noise from shape) and a ten-thousandth of the size; outliers of 20 to 1000 times the
+noise across the shape, alone, in adjacent pairs and in runs of three, off by amounts of their own or all by one, 6 samples or more between groups, at most
+a fifteenth of the samples."""
+import json
+import os
+import subprocess
+import unittest
+
+import numpy as np
+
+from judge import BATTEN, GUARD, InFolder, airfoils, shared, some
+
+CASES = int(os.environ.get("BATTEN_OUTLIER_CASES", 40))  # of each kind; the full measurement takes 500
+
+
+def waves(rng, bends):
+    """A smooth function over [0, 1] with about so many bends."""
+    parts = [(rng.uniform(0.3, 1) * bends / 2, rng.uniform(0, 2 * np.pi), rng.uniform(0.3, 1)) for _ in range(3)]
+    return lambda t: sum(a * np.sin(2 * np.pi * f * t + p) for f, p, a in parts)
+
+
+def groups(rng, m, closed=False):
+    """Samples of a sequence to be moved: 1 to 20 in groups of up to three, half of them at the ends."""
+    most, taken, chosen = rng.integers(1, 21), np.zeros(m, bool), []
+    for _ in range(50):
+        length = int(rng.choice([1, 1, 2, 3]))
+        at = int(rng.integers(0, m - length + 1))
+        if rng.random() < 0.5:
+            at = int(rng.integers(0, 6)) if rng.random() < 0.5 else int(m - length - rng.integers(0, 6))
+        if sum(map(len, chosen)) + length > min(most, max(1, m // 15)):
+            continue
+        near = np.arange(at - 6, at + length + 6)
+        near = near % m if closed else near[(near >= 0) & (near < m)]
+        if not taken[near].any():
+            taken[at:at + length] = True
+            chosen.append(np.arange(at, at + length))
+    return chosen
+
+
+def offsets(rng, count):
+    """How far the samples of a group go, in parts of the noise: each by itself, or all alike."""
+    size = 10 ** rng.uniform(np.log10(20), 3, count) * rng.choice([-1, 1], count)
+    return size if rng.random() < 0.5 else np.full(count, size[0])
+
+
+def missed_by_parabolas(values):
+    """A quarter of what a parabola through three neighbours misses of the next value, at worst; samples along the first axis."""
+    return np.abs(np.diff(values, 3, axis=0)).max() / 4
+
+
+def noise_for(rng, values, size):
+    least = max(1e-4 * size, missed_by_parabolas(values))
+    return least * 10 ** rng.uniform(0, 1) if least > 0.003 * size else 10 ** rng.uniform(np.log10(least), np.log10(0.01 * size))
+
+
+def curve(rng, dim, closed):
+    """A clean curve, its unit normals, and whether it is one of numbers over even parameters."""
+    bends = rng.uniform(2, 6)
+    m = int(bends * rng.uniform(20, 10 ** rng.uniform(1.4, 2.2)))
+    if dim == 1:
+        return waves(rng, bends)(np.arange(m) / (m - 1))[:, None], np.ones((m, 1))
+    step = rng.uniform(0.6, 1.4, m)
+    t = np.cumsum(step) / step.sum() if closed else np.concatenate([[0], np.cumsum(step[1:])]) / step[1:].sum()
+    if closed:
+        angle = 2 * np.pi * t
+        radius = 1 + 0.15 * np.sin(int(rng.integers(2, 4)) * angle + rng.uniform(0, 6))
+        place = lambda s: np.stack([2 * np.cos(s), 1.5 * np.sin(s), 0.5 * np.sin(2 * s)][:dim], axis=1)
+        point, tangent = radius[:, None] * place(angle), None
+    else:
+        parts = [waves(rng, bends) for _ in range(dim - 1)]
+        at = lambda s: np.stack([bends * s] + [w(s) for w in parts], axis=1)
+        point = at(t)
+    tangent = np.gradient(point, axis=0)
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    normal = rng.normal(size=point.shape)
+    normal -= (normal * tangent).sum(axis=1, keepdims=True) * tangent
+    return point, normal / np.linalg.norm(normal, axis=1, keepdims=True)
+
+
+def noisy_curve(seed, plant=True):
+    """Points, the outliers among them, the noise, and how to fit."""
+    rng = np.random.default_rng(seed)
+    dim, closed = int(rng.choice([1, 2, 2, 3])), rng.random() < 0.3
+    closed = closed and dim > 1
+    points, normal = curve(rng, dim, closed)
+    size = np.linalg.norm(np.ptp(points, axis=0))
+    sigma = noise_for(rng, points, size)
+    points = points + sigma * rng.normal(size=points.shape)
+    planted = groups(rng, len(points), closed) if plant else [[]]
+    for group in planted:
+        if len(group):
+            points[group] += (sigma * offsets(rng, len(group)))[:, None] * normal[group[len(group) // 2]]
+    mode = [["-n", 16], ["--tolerance", 5 * sigma], ["--smooth", "auto"]][seed % 3]
+    mode += (["--closed"] if closed else []) + (["--parametrize", "uniform"] if dim == 1 else [])
+    return points, sorted(np.concatenate(planted).astype(int).tolist()), sigma, mode
+
+
+def noisy_heights(seed, plant=True):
+    """A table of heights, or a grid of points; corners and edges have every third group."""
+    rng = np.random.default_rng(seed)
+    shape = [int(b * rng.uniform(10, 20)) for b in rng.uniform(1.5, 3.5, 2)]
+    u, v = (np.arange(k) / (k - 1) for k in shape)
+    (a, b), (c, d) = ([waves(rng, k / 12) for _ in range(2)] for k in shape)
+    values = np.outer(a(u), c(v)) + 0.5 * (b(u)[:, None] + d(v))
+    size = np.linalg.norm([np.ptp(values), shape[0] - 1, shape[1] - 1])
+    least = max(1e-4 * size, missed_by_parabolas(values), missed_by_parabolas(values.T))
+    sigma = least * 10 ** rng.uniform(0, 0.7)
+    clean, values = values, values + sigma * rng.normal(size=shape)
+    taken, planted, most = np.zeros(shape, bool), [], int(rng.integers(1, 21))
+    for _ in range(60 if plant else 0):
+        length, axis = int(rng.choice([1, 1, 2, 3])), int(rng.integers(0, 2))
+        extent = np.array([length, 1][::1 if axis == 0 else -1])
+        room = np.array(shape) - extent
+        at = np.array([int(rng.integers(0, k + 1)) for k in room])
+        place = rng.random()
+        if place < 0.4:  # an edge; below a tenth a corner
+            k = int(rng.integers(0, 2))
+            at[k] = rng.choice([0, room[k]])
+            if place < 0.1:
+                at[1 - k] = rng.choice([0, room[1 - k]])
+        low, high = np.maximum(at - 4, 0), at + extent + 4
+        if len(planted) + length > most or taken[low[0]:high[0], low[1]:high[1]].any():
+            continue
+        cells = [tuple(at + np.eye(2, dtype=int)[axis] * k) for k in range(length)]
+        for cell, off in zip(cells, offsets(rng, length)):
+            taken[cell] = True
+            values[cell] += sigma * off
+            planted.append(int(np.ravel_multi_index(cell, shape)))
+    grid_of_points = rng.random() < 0.5
+    if grid_of_points:
+        values = np.stack([*np.meshgrid(np.arange(shape[0]), np.arange(shape[1]), indexing="ij"), values], axis=-1)
+    mode = [["-n", "8x8"], ["--tolerance", 5 * sigma], ["--smooth", "auto"]][seed % 3]
+    return values, sorted(planted), sigma, mode + ([] if grid_of_points else ["--heights"])
+
+
+def noisy_cloud(seed, plant=True):
+    """Heights over scattered places; every third group is at the edge of the places."""
+    rng = np.random.default_rng(seed)
+    bends = rng.uniform(1.5, 3, 2)
+    m = int(bends.prod() * rng.uniform(150, 400))
+    place = rng.random((m, 2)) * bends
+    a, b, c, d = (waves(rng, k) for k in (*bends, *bends))
+    at = lambda p: a(p[:, 0] / bends[0]) * b(p[:, 1] / bends[1]) + 0.5 * (c(p[:, 0] / bends[0]) + d(p[:, 1] / bends[1]))
+    clean = at(place)
+    spacing = np.sqrt(bends.prod() / m)
+    across = [np.array([[u, v] for u in np.arange(0, bends[0], spacing)])
+              for v in np.linspace(0, bends[1], 5)]
+    size = np.linalg.norm([*bends, np.ptp(clean)])
+    sigma = max(2e-4 * size, *(missed_by_parabolas(at(line)[:, None]) for line in across)) * 10 ** rng.uniform(0, 0.7)
+    points = np.column_stack([place, clean + sigma * rng.normal(size=m)])
+    most, planted = int(rng.integers(1, 21)), []
+    for _ in range(60 if plant else 0):
+        length = int(rng.choice([1, 1, 2, 3]))
+        centre = rng.random(2) * bends
+        if rng.random() < 0.35:
+            k = int(rng.integers(0, 2))
+            centre[k] = rng.choice([0, bends[k]])
+        near = np.argsort(np.linalg.norm(place - centre, axis=1))[:length]
+        away = np.linalg.norm(place[planted] - centre, axis=1).min() if planted else np.inf
+        if len(planted) + length > most or away < 6 * spacing:
+            continue
+        points[near, 2] += sigma * offsets(rng, length)
+        planted.extend(near.tolist())
+    mode = [["-n", "8x8"], ["--tolerance", 5 * sigma], ["--smooth", "auto", "-n", "10x10"]][seed % 3]
+    return points, sorted(planted), sigma, mode + ["--project", "xy"]
+
+
+class Outliers(InFolder):
+    def set_aside(self, points, *arguments):
+        """The samples that are set aside; points are an array or a file."""
+        if isinstance(points, np.ndarray):
+            np.save(self.folder / "q.npy", points)
+            points = "q.npy"
+        done = subprocess.run([BATTEN, "fit", str(points), *map(str, arguments), "--robust", "-q", "--summary", "s.json"], cwd=self.folder,
+                              capture_output=True, text=True, timeout=GUARD)
+        self.assertIn(done.returncode, (0, 4), done.stderr)  # 4: the tolerance was not met
+        summary = json.loads((self.folder / "s.json").read_text())
+        return summary.get("set_aside", []), summary["samples"]
+
+    def check(self, generated, share):
+        """Exactly those that were planted, in this share of the cases."""
+        seeds = some(range(CASES))
+        wrong = {}
+        for seed in seeds:
+            points, planted, sigma, arguments = generated(seed)
+            found, _ = self.set_aside(points, *arguments)
+            if found != planted:
+                wrong[seed] = (points.shape, sorted(set(planted) - set(found)), sorted(set(found) - set(planted)))
+        self.assertLessEqual(len(wrong), max(1, (1 - share) * len(seeds)), f"{len(seeds) - len(wrong)} of {len(seeds)}: missed, too many: {wrong}")
+
+    def test_of_curves(self):
+        self.check(noisy_curve, 0.97)
+
+    def test_of_heights_and_grids(self):
+        self.check(noisy_heights, 0.9)
+
+    def test_of_clouds(self):
+        self.check(noisy_cloud, 0.95)
+
+    def test_where_there_are_none(self):
+        for generated in (noisy_curve, noisy_heights, noisy_cloud):
+            lost = total = 0
+            for seed in some(range(1000, 1000 + CASES // 4)):
+                points, _, _, arguments = generated(seed, plant=False)
+                found, samples = self.set_aside(points, *arguments)
+                lost, total = lost + len(found), total + samples
+            self.assertLessEqual(lost, 1e-3 * total, generated.__name__)
+
+    def test_real_sections_lose_nothing(self):
+        """Corners, sharp noses, cusps and jumps in spacing are the shape's own."""
+        lost = total = 0
+        for path in [shared(self, name) for name in ("profile205.csv", "glyph273.csv", "glyph577.csv")] + some(airfoils(self)[::4]):
+            found, samples = self.set_aside(path, "-n", 20)
+            lost, total = lost + len(found), total + samples
+        self.assertLessEqual(lost, 1e-3 * total)
+
+    def test_the_order_of_samples_does_not_count(self):
+        for seed in some(range(12)):
+            points, _, _, arguments = noisy_curve(seed)
+            back = [len(points) - 1 - i for i in self.set_aside(points[::-1].copy(), *arguments)[0]]
+            self.assertEqual(self.set_aside(points, *arguments)[0], back[::-1], seed)
+
+
+if __name__ == "__main__":
+    unittest.main()
