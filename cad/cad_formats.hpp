@@ -13,9 +13,8 @@ std::string step_text(const Scene& scene);
 std::string iges_text(const Scene& scene);
 
 /// B-spline curves and surfaces of a STEP or IGES file, in the file's own unit, trimmed ones their
-/// part; what is left out is noted. Throws FileError
-/// when it holds none, is cut off or cannot be read, InvalidInput for rational ones, SolverError
-/// when Open CASCADE gives up.
+/// part; what is left out is noted. Throws FileError when it holds none, is cut off or cannot be
+/// read, InvalidInput for rational ones, SolverError when Open CASCADE gives up.
 SplineFile parse_step(const std::filesystem::path& path, const std::string& content);
 SplineFile parse_iges(const std::filesystem::path& path, const std::string& content);
 

@@ -15,7 +15,6 @@
 #include <TopoDS_Face.hxx>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 namespace batten::cad {
 

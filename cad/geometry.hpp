@@ -15,7 +15,8 @@ class RationalSpline : public InvalidInput {
 };
 
 /// The spline as an edge or a face; throws InvalidInput for a volume, or a dimension other than 2
-/// or 3, SolverError where points of it differ from the spline's by 1e-12 of its size.
+/// or 3, SolverError where points of it differ from the spline's by 1e-12 of its size, or
+/// of its largest coordinate where that is more.
 TopoDS_Shape shape_of(const Spline& spline);
 
 /// What a shape holds: of faces the surfaces, of edges outside faces the curves, each the part that

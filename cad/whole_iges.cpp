@@ -166,7 +166,7 @@ void check_splines(const std::filesystem::path& path, const std::array<Records, 
         };
         if (!wanted || parameters.size() < *wanted) throw damaged("numbers are missing");
         for (std::size_t i = 0; i < *wanted; ++i)
-            if (!is_number(parameters[i]))
+            if (!parameters[i].empty() && !is_number(parameters[i])) // an empty one is the default
                 throw damaged(fmt::format("'{}' stands for a number", parameters[i]));
     }
 }

@@ -6,7 +6,6 @@
 #include <batten/io/output_set.hpp>
 #include <batten/io/spline_file.hpp>
 
-#include <fmt/format.h>
 #include <memory>
 #include <utility>
 

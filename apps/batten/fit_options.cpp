@@ -1,5 +1,6 @@
 #include "fit_flags.hpp"
 #include "parse.hpp"
+#include "spline_input.hpp"
 
 #include <batten/io/output_file.hpp>
 #include <batten/io/points_file.hpp>
@@ -93,7 +94,7 @@ std::optional<Parameters> given_parameters(const FitFlags& flags) {
 std::vector<std::vector<double>> given_knots(const std::string& path) {
     if (extension(path) != ".json") return {read_table(path).values()};
     std::vector<std::vector<double>> knots;
-    const Spline spline = read_spline(path);
+    const Spline spline = read({path});
     for (const KnotVector& axis : spline.axes())
         knots.emplace_back(axis.knots().begin(), axis.knots().end());
     return knots;
@@ -132,7 +133,7 @@ MethodOptions method_options(const FitFlags& flags) {
     } else if (flags.initial != "data") {
         method.initial = Initial::given;
         method.control = extension(flags.initial) == ".json"
-                             ? read_spline(flags.initial).free_control_points()
+                             ? read({flags.initial}).free_control_points()
                              : read_table(flags.initial);
     }
     return method;
@@ -171,7 +172,7 @@ HeldBoundary boundary(const std::string& text) {
             fmt::format("--boundary {}: u0=FILE, u1=FILE, v0=FILE or v1=FILE is needed", text));
     return {.axis = text[0] - 'u',
             .end = text[1] == '0' ? AxisEnd::begin : AxisEnd::end,
-            .spline = read_spline(text.substr(3))};
+            .spline = read({text.substr(3)})};
 }
 
 SmoothOptions smooth_options(const FitFlags& flags) {

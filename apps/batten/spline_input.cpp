@@ -4,6 +4,7 @@
 
 #include <batten/io/spline_file.hpp>
 
+#include <cstdio>
 #include <fmt/format.h>
 
 namespace batten::command {
@@ -21,7 +22,7 @@ void add_spline_input(CLI::App& app, SplineInput& input) {
 std::vector<Spline> read_all(const SplineInput& input) {
     SplineFile file = read_splines(input.path);
     for (const std::string& note : file.notes)
-        fmt::print(stderr, "batten: {}: {}\n", input.path, note);
+        std::fputs(fmt::format("batten: {}: {}\n", input.path, note).c_str(), stderr);
     if (input.entity == 0) return std::move(file.splines);
     return {one_of(std::move(file), input.path, input.entity)};
 }

@@ -52,7 +52,7 @@ class Entities(InFolder):
                 self.good("plot", file, "--entity", k + 1, "-o", "p.svg")
 
     def test_a_wrong_number_is_refused(self):
-        several = "all.step: it holds 3 splines, one is needed: its number must be said (entity 1 to 3)"
+        several = "all.step: it holds 3 splines, one is needed: say which, entity 1 to 3 (a conversion takes them apart)"
         self.bad(several, "evaluate", "all.step", "--samples", 3)
         self.bad(several, "compare", "all.step", "p0.csv")
         self.bad(several, "plot", "all.step", "-o", "p.svg")

@@ -54,7 +54,7 @@ bool determines(std::string_view name, const std::string& gap) {
 /// conjugate gradients dearer than a sparse factorisation.
 bool smooth_and_small(const Problem& problem) {
     constexpr Index most = 1 << 16; // control points whose factors memory surely holds
-    if (!problem.options.smooth.wanted) return false;
+    if (!problem.options.smooth.wanted || problem.axes.control_points.empty()) return false;
     Index size = 1;
     for (const Index n : problem.axes.control_points) size = size > most ? size : size * n;
     return size <= most;

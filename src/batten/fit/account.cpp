@@ -137,7 +137,9 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
                                   report.constraint_error * report.constraint_error});
     if (!problem.tolerance.empty()) {
         report.tolerance_ratio = part_of_tolerance(away, problem.tolerance);
-        const double largest = *std::ranges::max_element(problem.tolerance);
+        double largest = 0; // an infinite one is of a sample that may be anywhere
+        for (double t : problem.tolerance)
+            if (std::isfinite(t)) largest = std::max(largest, t);
         if (largest > report.tolerance) report.largest_tolerance = largest;
     }
     report.goals = judged(report, problem);

@@ -59,10 +59,9 @@ FitResult with_outliers(FitResult result, const Problem& problem,
     if (outliers.empty()) return result;
     FitReport& report = result.report;
     report.set_aside = outliers;
+    const Subset kept = Subset::without(outliers, problem.samples.size());
     if (problem.kind != SampleKind::grid) {
-        const Subset kept = Subset::without(outliers, problem.samples.size());
         report.samples = problem.samples.size();
-        report.deviation.worst_sample = kept.original(report.deviation.worst_sample);
         if (problem.kind == SampleKind::cloud)
             result.parameters = problem.parameters;
         else
@@ -70,6 +69,8 @@ FitResult with_outliers(FitResult result, const Problem& problem,
     }
     result.deviations =
         deviations(result.spline, problem.samples, result.parameters, report.deviation.kind);
+    report.deviation = summarise(kept.of(result.deviations), report.deviation.kind);
+    report.deviation.worst_sample = kept.original(report.deviation.worst_sample);
     return result;
 }
 

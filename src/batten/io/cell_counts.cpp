@@ -111,6 +111,7 @@ class Counting {
         const std::size_t b = (a + 1) % 3;
         const std::size_t c = (a + 2) % 3;
         for_each_piece([&](const PerAxis<std::size_t>& at, const Bend& bend) {
+            if (bend[a] == std::array<double, 3>{}) return; // straight, or no axis of this spline
             const double y = 1 / n[b][at[b]];
             const double z = 1 / n[c][at[c]];
             const double room =

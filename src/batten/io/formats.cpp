@@ -232,9 +232,10 @@ Spline one_of(SplineFile file, const std::filesystem::path& path, Index entity) 
         throw InvalidInput(fmt::format("{}: entity {}: the file holds {} spline{}, counted from 1",
                                        path.string(), entity, count, count == 1 ? "" : "s"));
     if (entity == 0 && count != 1)
-        throw InvalidInput(fmt::format("{}: it holds {} splines, one is needed: its number must be "
-                                       "said (entity 1 to {})",
-                                       path.string(), count, count));
+        throw InvalidInput(
+            fmt::format("{}: it holds {} splines, one is needed: say which, entity 1 "
+                        "to {} (a conversion takes them apart)",
+                        path.string(), count, count));
     return std::move(file.splines[static_cast<std::size_t>(std::max<Index>(entity, 1) - 1)]);
 }
 

@@ -105,7 +105,7 @@ CellCounts skin_cells(const Spline& volume, double chord) {
     for (const KnotVector& axis : volume.axes())
         cells.emplace_back(axis.breakpoints().size() - 1, 1);
     for (Index k = 0; k < 3; ++k) {
-        if (closes(volume, k, apart)) continue;
+        if (!is_function(volume) && closes(volume, k, apart)) continue;
         for (double end : {volume.axis(k).begin(), volume.axis(k).end()}) {
             const CellCounts face = enclosing_cells(section(volume, k, end), chord, apart);
             for (Index f = 0; f < 2; ++f)

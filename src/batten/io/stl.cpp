@@ -23,7 +23,8 @@ void check_surface(const Spline& spline) {
         throw InvalidInput(fmt::format(
             "an .stl holds surfaces in space, this spline has {} {} in dimension {}",
             spline.axis_count(), spline.axis_count() == 1 ? "axis" : "axes", spline.dim()));
-    for (double x : spline.control_points().values())
+    const Spline shown = drawn(spline);
+    for (double x : shown.control_points().values())
         if (std::abs(x) > std::numeric_limits<float>::max())
             throw InvalidInput(
                 fmt::format("an .stl holds single precision, a coordinate of {} is beyond it", x));

@@ -229,7 +229,7 @@ std::string svg_projection(const Scene& scene) {
         "  <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
         width, height);
     if (!scene.title.empty()) svg += fmt::format("  <title>{}</title>\n", svg_escaped(scene.title));
-    if (faces.empty()) svg += curve_svg(spline, view);
+    if (spline.axis_count() == 1) svg += curve_svg(spline, view);
     if (view.low == view.high) // one point
         svg += fmt::format("  <path class=\"dot\" d=\"M {} h 0\" stroke=\"#1f4e79\" "
                            "stroke-width=\"6\"/>\n",

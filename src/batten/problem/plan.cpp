@@ -59,7 +59,7 @@ KnotPlacement placement_of(const FitOptions& options) {
 }
 
 /// The parameters that differ, by more than a small part of their range.
-std::vector<double> distinct(const std::vector<double>& parameters) {
+std::vector<double> apart(const std::vector<double>& parameters) {
     const double apart = 1e-9 * (parameters.back() - parameters.front());
     std::vector<double> result;
     for (double t : parameters)
@@ -97,7 +97,7 @@ KnotVector axis_knots(const Problem& problem, std::size_t axis) {
     // what is smooth needs no knots between samples that repeat
     const std::vector<double> places = even ? std::vector<double>()
                                        : problem.options.smooth.wanted
-                                           ? distinct(problem.parameters.axes[axis])
+                                           ? apart(problem.parameters.axes[axis])
                                            : problem.parameters.axes[axis];
     const bool fewer = problem.options.smooth.wanted && static_cast<Index>(places.size()) < n;
     const KnotVector knots =
@@ -150,7 +150,7 @@ std::vector<Index> smoothing_size(const Problem& problem) {
         const bool cloud = problem.parameters.is_scattered();
         const Index places = cloud
                                  ? static_cast<Index>(samples_along(problem, k))
-                                 : static_cast<Index>(distinct(problem.parameters.axes[k]).size());
+                                 : static_cast<Index>(apart(problem.parameters.axes[k]).size());
         const Index few = std::min<Index>(places, 2 * problem.axes.degree[k] + 1);
         const Index wanted = std::min(std::max(places / 2, few), most_smoothing_size(problem));
         result.push_back(std::max<Index>(wanted, problem.axes.degree[k] + 1));

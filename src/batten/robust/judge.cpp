@@ -75,10 +75,10 @@ Judge::Verdict Judge::of(Index sample) const {
               std::span<const Stencil>(behind)})
             by.push_back(most_certain(sample, axis, stencils, usual));
     }
-    const double certain = 2 * std::ranges::min(by, {}, &Verdict::limit).limit;
-    Verdict best;
+    Verdict best = *std::ranges::min_element(by, {}, &Verdict::limit);
+    const double certain = 2 * best.limit;
     for (const Verdict& one : by)
-        if (one.limit <= certain && one.part < best.part) best = one;
+        if (one.limit <= certain) best.part = std::min(best.part, one.part);
     if (!std::isfinite(certain)) best.part = 0;
     return best;
 }

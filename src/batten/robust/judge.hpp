@@ -41,8 +41,8 @@ class Judge {
     Verdict of(Index sample) const;
 
     /// Whether a sample that nothing explains may be a bend's own: along an axis its neighbours are
-    /// as badly predicted without it, or no noise is to be seen and it is off by a small part of a
-    /// step, at an end or in a pair less than a third, in a longer `run` less than one and a half.
+    /// as badly predicted without it, or no noise is to be seen and it is off by less than 0.07 of
+    /// a step, at an end or in a pair 0.3, in a longer `run` 1.5.
     bool unresolved(Index sample, std::size_t axis, Index run) const;
 
   private:

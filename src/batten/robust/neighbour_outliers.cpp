@@ -224,11 +224,12 @@ NeighbourOutliers neighbour_outliers(Trusted trusted, const std::vector<double>&
     std::vector<double> predicted;
     std::vector<double> off(static_cast<std::size_t>(trusted.points().dim()));
     for (std::size_t k = 0; k < left.size(); ++k) {
-        bool part = false;
+        bool part = verdict[k].by.before + verdict[k].by.behind == 0; // nobody to ask
         for (std::size_t axis = 0; axis < trusted.axis_count() && !part; ++axis)
             part = part_of_shape(trusted, judge, axis, left[k]);
         if (part) continue;
         result.samples.push_back(left[k]);
+        std::ranges::fill(off, 0.0);
         trusted.predict(left[k], verdict[k].axis, verdict[k].by, off);
         for (std::size_t d = 0; d < off.size(); ++d)
             predicted.push_back(trusted.points()[left[k]][d] + off[d]);

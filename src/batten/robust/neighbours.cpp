@@ -23,6 +23,7 @@ using Weights = std::array<double, Trusted::most_neighbours>;
 /// neighbours do not determine the polynomial [Forsythe1957].
 double weights(std::span<const double> at, double here, int degree, Weights& weight) {
     const std::size_t n = at.size();
+    if (n == 0) return std::numeric_limits<double>::infinity();
     const double half = (at[n - 1] - at[0]) / 2;
     if (!(half > 0)) return std::numeric_limits<double>::infinity();
     Weights t;

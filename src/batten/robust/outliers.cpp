@@ -4,6 +4,7 @@
 #include <batten/robust/cloud_outliers.hpp>
 #include <batten/robust/neighbour_outliers.hpp>
 #include <batten/robust/sequence_outliers.hpp>
+#include <batten/robust/suspects.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -34,10 +35,7 @@ std::vector<double> known_places(const Problem& problem, std::size_t axis) {
         problem.samples.spacing == Spacing::even)
         return problem.parameters.axes[axis];
     if (problem.samples.dim() > 1) return {};
-    const Index m = problem.samples.shape()[axis];
-    std::vector<double> even;
-    for (Index i = 0; i < m; ++i) even.push_back(static_cast<double>(i) / static_cast<double>(m));
-    return even;
+    return counted(problem.samples.shape()[axis]);
 }
 
 /// The grid's problem with what neighbours predict in the place of outliers.

@@ -55,7 +55,7 @@ void AxisRows::add_samples(BandedQr& qr, std::size_t begin, std::size_t end, Val
 }
 
 BandedQr AxisRows::reduced(Index columns, Values values) const {
-    constexpr Index chunk = 1 << 14;
+    const Index chunk = std::max<Index>(1 << 14, 4 * knots_.free_count()); // each has a triangle
     BandedQr result = empty(columns);
     const auto count = static_cast<Index>(order_.size());
     if (count <= chunk) {

@@ -6,8 +6,8 @@
 
 namespace batten {
 
-/// What a fit of a sequence, or of an unweighted grid, minimises, as rows in place of their normal
-/// equations.
+/// What a fit of a sequence, or of a grid of unit weights, minimises, as rows in place of their
+/// normal equations.
 struct SampleRows {
     const Samples& samples;
     const Parameters& parameters;

@@ -38,8 +38,8 @@ class BandedSystem : public FactoredSystem {
     BandedMatrix gram_;
 };
 
-/// The normal system of a full unweighted grid of 2 or 3 axes: the Kronecker product of one banded
-/// matrix per axis.
+/// The normal system of a full grid of unit weights along 2 or 3 axes: the Kronecker product of one
+/// banded matrix per axis.
 class KroneckerSystem : public FactoredSystem {
   public:
     /// `parameters` of the whole grid; samples follow through add().
