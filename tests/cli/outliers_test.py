@@ -217,6 +217,21 @@ class Outliers(InFolder):
             lost, total = lost + len(found), total + samples
         self.assertLessEqual(lost, 1e-3 * total)
 
+    def test_a_grid_is_judged_without_what_is_set_aside(self):
+        x, y = np.meshgrid(np.linspace(0, 1, 30), np.linspace(0, 1, 30), indexing="ij")
+        grid = np.stack([x, y, np.sin(3 * x) * np.cos(2 * y)], axis=-1)
+        grid[10, 12, 2] += 0.5
+        self.assertEqual(self.set_aside(grid, "--tolerance", 0.01)[0], [312])
+        summary = json.loads((self.folder / "s.json").read_text())
+        self.assertLessEqual(summary["max_deviation"], 0.01)
+        self.assertNotEqual(summary["worst_sample"], 312)
+        self.assertNotIn("largest_tolerance", summary)
+        row_and_column = grid.copy()  # where a bad row crosses a bad column nobody is left to ask
+        row_and_column[15, :, 2] += 0.3
+        row_and_column[:, 15, 2] -= 0.3
+        self.set_aside(row_and_column, "-n", "8x8")
+        self.assertTrue(np.isfinite(json.loads((self.folder / "s.json").read_text())["max_deviation"]))
+
     def test_the_order_of_samples_does_not_count(self):
         for seed in some(range(12)):
             points, _, _, arguments = noisy_curve(seed)

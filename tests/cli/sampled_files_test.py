@@ -442,6 +442,24 @@ class SampledFiles(InFolder):
         self.assertIn("double precision moves these points by up to", self.convert("s.vtu", "--chord-tolerance", 1e-12, status=2))
         self.assertEqual(self.convert("s.vtu", "--chord-tolerance", 1e-8, status=2), "batten: chord tolerance 1e-08: more than 1e+07 points would be needed\n")
 
+    def test_a_graph_beyond_single_precision_is_no_stl(self):
+        heights = {"format": "batten-spline", "version": 1, "degree": [1, 1], "knots": [[0, 0, 1e39, 1e39]] * 2, "control_shape": [2, 2],
+                   "control_points": [[0], [1], [2], [4]]}
+        (self.folder / "s.json").write_text(json.dumps(heights))
+        self.assertEqual(self.convert("s.stl", status=2), "batten: an .stl holds single precision, a coordinate of 1e+39 is beyond it\n")
+        self.assertFalse((self.folder / "s.stl").exists())
+
+    def test_a_volume_closed_along_all_axes_is_no_curve(self):
+        n, degree = 4, 2
+        knots = [k / n for k in range(-degree, n + degree + 1)]
+        free = np.random.default_rng(1).random((n, n, n, 3))
+        control = np.pad(free, [(0, degree)] * 3 + [(0, 0)], mode="wrap")
+        spline = {"format": "batten-spline", "version": 1, "degree": [degree] * 3, "closed": [True] * 3, "knots": [knots] * 3,
+                  "control_shape": [n + degree] * 3, "control_points": control.reshape(-1, 3).tolist()}
+        (self.folder / "s.json").write_text(json.dumps(spline))
+        self.convert("s.svg")
+        self.assertNotIn('class="curve"', (self.folder / "s.svg").read_text())
+
 
 def size_of(spline):
     return np.ptp(np.array(spline["control_points"]), axis=0).max()
