@@ -19,11 +19,16 @@ constexpr std::size_t field_length = 8;
 constexpr std::size_t parameter_columns = 64; // of a record; the entity's number follows
 constexpr std::string_view sections = "SGDP";
 
+std::string_view without_blanks_around(std::string_view text) {
+    const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
+    text.remove_prefix(first);
+    return text.substr(0, text.find_last_not_of(' ') + 1);
+}
+
 /// The number that stands alone between spaces.
 std::optional<Index> whole_number(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(' ');
-    if (first == std::string_view::npos) return std::nullopt;
-    text = text.substr(first, text.find_last_not_of(' ') + 1 - first);
+    text = without_blanks_around(text);
+    if (text.empty()) return std::nullopt;
     Index value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -98,17 +103,19 @@ Delimiters delimiters_of(const Records& global) {
     return result;
 }
 
-/// The parameters of an entity, as text.
+/// The parameters of an entity, as text; a blank within a number is damage.
 std::vector<std::string> parameters_of(const Records& lines, Index first, Index count,
                                        Delimiters delimiters) {
     std::vector<std::string> result(1);
     for (Index k = first; k < first + count && k <= std::ssize(lines); ++k)
         for (char c : lines[static_cast<std::size_t>(k - 1)].substr(0, parameter_columns)) {
-            if (c == delimiters.record) return result;
-            if (c == delimiters.parameter)
-                result.emplace_back();
-            else if (c != ' ')
+            if (c != delimiters.record && c != delimiters.parameter) {
                 result.back() += c;
+                continue;
+            }
+            result.back() = without_blanks_around(result.back());
+            if (c == delimiters.record) return result;
+            result.emplace_back();
         }
     return {}; // it does not end
 }

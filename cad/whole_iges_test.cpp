@@ -84,6 +84,9 @@ TEST(WholeIges, a_missing_or_changed_record_is_named) {
                               "directory record 1");
     lines[5] = record("1.D0,2.,,0.,1.,0.,0.,1.;", 'P', "2");
     EXPECT_EQ(refusal(lines), ""); // a default
+    lines[5] = record("1.D0,2.5  5,1.,0.,1.,0.,0.,1.;", 'P', "2");
+    EXPECT_EQ(refusal(lines), "a.igs: the file is damaged: '2.5  5' stands for a number in the "
+                              "B-spline of directory record 1");
     lines[5] = record("1.D0,2.,x,0.,1.,0.,0.,1.;", 'P', "2");
     EXPECT_EQ(refusal(lines), "a.igs: the file is damaged: 'x' stands for a number in the B-spline "
                               "of directory record 1");
