@@ -24,11 +24,14 @@ struct Flags {
 
 /// The names of as many files as there are splines, or the name itself.
 std::vector<std::string> names_of(const std::string& output, std::size_t splines) {
-    const std::size_t at = output.find(number_mark);
-    if (at == std::string::npos) return {output};
+    if (output.find(number_mark) == std::string::npos) return {output};
     std::vector<std::string> names;
-    for (std::size_t k = 1; k <= splines; ++k)
-        names.push_back(std::string(output).replace(at, number_mark.size(), std::to_string(k)));
+    for (std::size_t k = 1; k <= splines; ++k) {
+        std::string name = output;
+        for (std::size_t at = 0; (at = name.find(number_mark)) != std::string::npos;)
+            name.replace(at, number_mark.size(), std::to_string(k));
+        names.push_back(std::move(name));
+    }
     return names;
 }
 

@@ -38,6 +38,8 @@ class Entities(InFolder):
             for k in range(3):
                 self.same(f"part-{k + 1}.json", k)
             self.assertEqual(self.good("info", "whole.step").count("entity"), 3)
+            self.good("convert", file, "-o", "q%d-%d.json")
+            self.same("q2-2.json", 1)
 
     def test_one_is_named(self):
         for file in ("all.step", "all.igs"):
