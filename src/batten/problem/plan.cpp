@@ -148,9 +148,8 @@ std::vector<Index> smoothing_size(const Problem& problem) {
     std::vector<Index> result;
     for (std::size_t k = 0; k < axes; ++k) {
         const bool cloud = problem.parameters.is_scattered();
-        const Index places = cloud
-                                 ? static_cast<Index>(samples_along(problem, k))
-                                 : static_cast<Index>(apart(problem.parameters.axes[k]).size());
+        const Index places = cloud ? static_cast<Index>(samples_along(problem, k))
+                                   : static_cast<Index>(apart(problem.parameters.axes[k]).size());
         const Index few = std::min<Index>(places, 2 * problem.axes.degree[k] + 1);
         const Index wanted = std::min(std::max(places / 2, few), most_smoothing_size(problem));
         result.push_back(std::max<Index>(wanted, problem.axes.degree[k] + 1));
