@@ -9,6 +9,7 @@
 #include <TCollection_HAsciiString.hxx>
 #include <filesystem>
 #include <mutex>
+#include <sstream>
 #include <string>
 
 namespace batten::cad {
@@ -30,6 +31,17 @@ Handle(TCollection_HAsciiString) words(const std::string& text);
 
 /// Makes numbers be written with every digit they have.
 void write_all_digits(Interface_FloatWriter& writer);
+
+/// The text of a file of either format.
+template <class Writer, class Protocol, class Model>
+std::string text_of(const Handle(Model) & model) {
+    Writer writer(model);
+    write_all_digits(writer.FloatWriter());
+    writer.SendModel(Handle(Protocol)::DownCast(model->Protocol()));
+    std::ostringstream stream;
+    if (!writer.Print(stream)) throw SolverError("the text cannot be made");
+    return stream.str();
+}
 
 /// Throws SolverError with Open CASCADE's words.
 [[noreturn]] void give_up(const Standard_Failure& failure);

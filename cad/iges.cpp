@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
-#include <sstream>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -45,16 +44,6 @@ void put(const MemoryFile& file, const std::string& content) {
     std::ofstream stream(file.path(), std::ios::binary);
     stream << content;
     if (!stream.flush()) throw SolverError("the file cannot be put into memory");
-}
-
-/// The file's text.
-std::string text_of(const Handle(IGESData_IGESModel) & model) {
-    IGESData_IGESWriter writer(model);
-    write_all_digits(writer.FloatWriter());
-    writer.SendModel(Handle(IGESData_Protocol)::DownCast(model->Protocol()));
-    std::ostringstream stream;
-    if (!writer.Print(stream)) throw SolverError("the text cannot be made");
-    return stream.str();
 }
 
 } // namespace
@@ -87,7 +76,7 @@ std::string iges_text(const Scene& scene) {
         global.SetCompanyName(words("batten"));
         global.SetSystemId(words("batten"));
         writer.Model()->SetGlobalSection(global);
-        return text_of(writer.Model());
+        return text_of<IGESData_IGESWriter, IGESData_Protocol>(writer.Model());
     });
 }
 

@@ -79,16 +79,6 @@ std::string with_short_numbers(const std::string& text) {
     return result;
 }
 
-/// The file's text.
-std::string text_of(const Handle(StepData_StepModel) & model) {
-    StepData_StepWriter writer(model);
-    write_all_digits(writer.FloatWriter());
-    writer.SendModel(Handle(StepData_Protocol)::DownCast(model->Protocol()));
-    std::ostringstream stream;
-    if (!writer.Print(stream)) throw SolverError("the text cannot be made");
-    return with_short_numbers(stream.str());
-}
-
 /// Millimetres of the unit that the file's first context names; 1 where none does.
 double unit_of(const StepData_StepModel& model) {
     using WithUncertainty = StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx;
@@ -132,7 +122,7 @@ std::string step_text(const Scene& scene) {
         header.SetName(words(plain(scene.title)));
         header.SetTimeStamp(words(scene.date.empty() ? fixed_date : plain(scene.date)));
         header.SetOriginatingSystem(words("batten"));
-        return text_of(writer.Model());
+        return with_short_numbers(text_of<StepData_StepWriter, StepData_Protocol>(writer.Model()));
     });
 }
 

@@ -156,8 +156,7 @@ double noise_of(const Spline& spline, const Problem& problem, double freedom) {
         squares += weight * away[i] * away[i];
         total += weight;
     }
-    const auto m = static_cast<double>(away.size());
-    return std::sqrt(squares / total * m / std::max(1.0, m - freedom));
+    return noise_left(squares / total, static_cast<double>(away.size()), freedom);
 }
 
 Course answered(const Equations& equations, const Problem& problem, std::string_view method) {

@@ -18,16 +18,6 @@ namespace {
 
 constexpr double most_points = 1e7;
 
-/// `pieces` equal parts of every span.
-std::vector<double> divided(const std::vector<double>& breaks, const std::vector<Index>& pieces) {
-    std::vector<double> t{breaks.front()};
-    for (std::size_t b = 0; b + 1 < breaks.size(); ++b)
-        for (Index k = 1; k <= pieces[b]; ++k)
-            t.push_back(std::lerp(breaks[b], breaks[b + 1],
-                                  static_cast<double>(k) / static_cast<double>(pieces[b])));
-    return t;
-}
-
 /// What is left of the tolerance when points are moved by the rounding of their coordinates to
 /// doubles, and by a file by `moved`: of that at least half.
 double after_rounding(const Spline& spline, double chord, double moved) {
@@ -132,6 +122,15 @@ AxisPlaces places_of(const Spline& spline, const CellCounts& cells, double point
 }
 
 } // namespace
+
+std::vector<double> divided(const std::vector<double>& breaks, const std::vector<Index>& pieces) {
+    std::vector<double> t{breaks.front()};
+    for (std::size_t b = 0; b + 1 < breaks.size(); ++b)
+        for (Index k = 1; k <= pieces[b]; ++k)
+            t.push_back(std::lerp(breaks[b], breaks[b + 1],
+                                  static_cast<double>(k) / static_cast<double>(pieces[b])));
+    return t;
+}
 
 AxisPlaces sampling(const Spline& spline, double chord, double moved) {
     const double part = after_rounding(spline, chord, moved);

@@ -22,6 +22,9 @@ AxisPlaces sampling(const Spline& spline, double chord, double moved = 0);
 /// Parameters so dense that this holds for the six faces of a volume.
 AxisPlaces skin_sampling(const Spline& volume, double chord, double moved = 0);
 
+/// Parameters at `pieces` equal parts of every span between two breaks, one count per span.
+std::vector<double> divided(const std::vector<double>& breaks, const std::vector<Index>& pieces);
+
 /// The middle of the control points' box.
 std::vector<double> centre_of(const Spline& spline);
 

@@ -3,6 +3,7 @@
 #include <batten/core/vectors.hpp>
 #include <batten/io/cell_counts.hpp>
 #include <batten/io/sampled_nets.hpp>
+#include <batten/io/sampling.hpp>
 #include <batten/io/svg_parts.hpp>
 
 #include <algorithm>
@@ -79,15 +80,13 @@ struct Face {
 /// The spline's own chords and 24 even steps; of more than fit a picture, as many of these.
 std::vector<double> places_of(const KnotVector& axis, const std::vector<Index>& cells) {
     const std::vector<double> breaks = axis.breakpoints();
-    std::vector<double> fine{breaks.front()};
+    std::vector<Index> pieces;
     for (std::size_t b = 0; b + 1 < breaks.size(); ++b) {
         const double part = (breaks[b + 1] - breaks[b]) / axis.length();
         const auto even = static_cast<Index>(std::ceil(part * least_quads));
-        const Index pieces = std::max(even, cells[b]);
-        for (Index k = 1; k <= pieces; ++k)
-            fine.push_back(std::lerp(breaks[b], breaks[b + 1],
-                                     static_cast<double>(k) / static_cast<double>(pieces)));
+        pieces.push_back(std::max(even, cells[b]));
     }
+    std::vector<double> fine = divided(breaks, pieces);
     const auto steps = static_cast<Index>(fine.size()) - 1;
     if (steps <= most_quads) return fine;
     std::vector<double> some;

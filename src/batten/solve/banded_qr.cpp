@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 namespace batten {
 
@@ -25,6 +26,14 @@ struct Rotation {
         b = cosine * b - sine * a;
         a = kept;
     }
+};
+
+/// The entries of one strand along the axis.
+struct Strand {
+    Extended* first;
+    Index stride;
+
+    Extended& operator[](Index i) const { return first[i * stride]; }
 };
 
 } // namespace
@@ -129,65 +138,54 @@ void BandedQr::visit_row(Index i, Visit visit) const {
         visit(inner + c, row[degree_ + 1 + c]);
 }
 
-void BandedQr::apply(Extended* x, AxisLayout layout) const {
-    const Index inner = layout.inner;
+template <class Visit>
+void BandedQr::for_each_entry(Extended* x, AxisLayout layout, Order order, Visit visit) const {
     for_each_chunk(layout.outer, [&](Index o) {
-        Extended* at = x + o * size_ * inner;
-        for (Index i = 0; i < size_; ++i)
-            for (Index d = 0; d < inner; ++d) {
-                Extended sum = 0;
-                visit_row(i, [&](Index j, Extended value) { sum += value * at[j * inner + d]; });
-                at[i * inner + d] = sum;
-            }
+        for (Index k = 0; k < size_; ++k)
+            for (Index d = 0; d < layout.inner; ++d)
+                visit(order == Order::ascending ? k : size_ - 1 - k,
+                      Strand{x + o * size_ * layout.inner + d, layout.inner});
+    });
+}
+
+void BandedQr::apply(Extended* x, AxisLayout layout) const {
+    for_each_entry(x, layout, Order::ascending, [&](Index i, Strand at) {
+        Extended sum = 0;
+        visit_row(i, [&](Index j, Extended value) { sum += value * at[j]; });
+        at[i] = sum;
     });
 }
 
 void BandedQr::apply_transposed(Extended* x, AxisLayout layout) const {
-    const Index inner = layout.inner;
-    for_each_chunk(layout.outer, [&](Index o) {
-        Extended* at = x + o * size_ * inner;
-        for (Index i = size_; i-- > 0;)
-            for (Index d = 0; d < inner; ++d) {
-                const Extended from = at[i * inner + d];
-                at[i * inner + d] = 0;
-                visit_row(i, [&](Index j, Extended value) { at[j * inner + d] += value * from; });
-            }
+    for_each_entry(x, layout, Order::descending, [&](Index i, Strand at) {
+        const Extended from = std::exchange(at[i], 0);
+        visit_row(i, [&](Index j, Extended value) { at[j] += value * from; });
     });
 }
 
 void BandedQr::solve(Extended* x, AxisLayout layout) const {
-    const Index inner = layout.inner;
-    for_each_chunk(layout.outer, [&](Index o) {
-        Extended* at = x + o * size_ * inner;
-        for (Index i = size_; i-- > 0;)
-            for (Index d = 0; d < inner; ++d) {
-                Extended sum = at[i * inner + d];
-                Extended pivot = 1;
-                visit_row(i, [&](Index j, Extended value) {
-                    if (j == i)
-                        pivot = value;
-                    else
-                        sum -= value * at[j * inner + d];
-                });
-                at[i * inner + d] = sum / pivot;
-            }
+    for_each_entry(x, layout, Order::descending, [&](Index i, Strand at) {
+        Extended sum = at[i];
+        Extended pivot = 1;
+        visit_row(i, [&](Index j, Extended value) {
+            if (j == i)
+                pivot = value;
+            else
+                sum -= value * at[j];
+        });
+        at[i] = sum / pivot;
     });
 }
 
 void BandedQr::solve_transposed(Extended* x, AxisLayout layout) const {
-    const Index inner = layout.inner;
-    for_each_chunk(layout.outer, [&](Index o) {
-        Extended* at = x + o * size_ * inner;
-        for (Index i = 0; i < size_; ++i)
-            for (Index d = 0; d < inner; ++d) {
-                Extended from = 0;
-                visit_row(i, [&](Index j, Extended value) {
-                    if (j == i)
-                        from = at[i * inner + d] /= value;
-                    else
-                        at[j * inner + d] -= value * from;
-                });
-            }
+    for_each_entry(x, layout, Order::ascending, [&](Index i, Strand at) {
+        Extended from = 0;
+        visit_row(i, [&](Index j, Extended value) {
+            if (j == i)
+                from = at[i] /= value;
+            else
+                at[j] -= value * from;
+        });
     });
 }
 

@@ -74,6 +74,10 @@ class BandedQr {
     /// Calls `visit(column, value)` for the entries of row i from the diagonal on.
     template <class Visit>
     void visit_row(Index i, Visit visit) const;
+    enum class Order { ascending, descending };
+    /// Calls `visit(i, strand)` for each entry i of each strand of x along the axis.
+    template <class Visit>
+    void for_each_entry(Extended* x, AxisLayout layout, Order order, Visit visit) const;
 
     Index size_;
     Index border_;

@@ -17,8 +17,7 @@ namespace {
 Smoothing judged(const NormalSystem& system, double lambda, const Quality& quality) {
     const auto m = static_cast<double>(system.sample_count());
     const double mean_square = quality.squares / total_weight(system);
-    return {lambda, quality.trace, quality.axis_traces,
-            std::sqrt(mean_square * m / std::max(1.0, m - quality.trace))};
+    return {lambda, quality.trace, quality.axis_traces, noise_left(mean_square, m, quality.trace)};
 }
 
 /// Even knots for at most so many control points per axis.
@@ -90,6 +89,10 @@ std::optional<Smoothing> chosen_on_coarser(const NormalSystem& system, const Sam
 }
 
 } // namespace
+
+double noise_left(double mean_square, double m, double freedom) {
+    return std::sqrt(mean_square * m / std::max(1.0, m - freedom));
+}
 
 Smoothing cross_validated(const NormalSystem& system, const Samples& samples,
                           const Parameters& parameters, int order) {

@@ -13,6 +13,10 @@ struct Smoothing {
                       ///< one, all coordinates together
 };
 
+/// Standard deviation of one of m samples, of the mean weight, where a fit with so much freedom
+/// leaves this (weighted) mean square.
+double noise_left(double mean_square, double m, double freedom);
+
 /// The lambda with the least V = (RSS / m) / (1 - trace / m)^2 [CravenWahba1979] for the m samples
 /// that the system was assembled of: between one that leaves all freedom and one that leaves only
 /// polynomials, to where V is as large a factor of root two to both sides. Neither the data's unit
