@@ -104,7 +104,7 @@ void add_lines(Cells& cells, Index first, const GridIndex& grid) {
 void add_hexahedron(Cells& cells, const std::array<Index, 8>& corner) {
     std::array<Index, 8> sorted = corner;
     std::ranges::sort(sorted);
-    if (std::ranges::unique(sorted).begin() - sorted.begin() < 4) return;
+    if (std::unique(sorted.begin(), sorted.end()) - sorted.begin() < 4) return;
     cells.add(
         {corner[0], corner[1], corner[2], corner[3], corner[4], corner[5], corner[6], corner[7]},
         Cells::hexahedron);

@@ -71,8 +71,7 @@ std::vector<Index> leave_out(TrustedCloud& cloud, const std::vector<double>& lea
         for (Index i : now)
             for (Index beside : cloud.nearest(i, 48)) changed.push_back(beside);
         std::ranges::sort(changed);
-        const auto repeated = std::ranges::unique(changed);
-        changed.erase(repeated.begin(), repeated.end());
+        changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
         for (Index i : now)
             normal[static_cast<std::size_t>(i)] = std::numeric_limits<double>::infinity();
     }
