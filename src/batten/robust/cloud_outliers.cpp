@@ -14,7 +14,7 @@ namespace {
 
 constexpr Surroundings closest_around{2, 3};
 constexpr std::array surroundings{closest_around, Surroundings{1, 3}, Surroundings{1, 8},
-                                  Surroundings{2, 6}};
+                                  Surroundings{2, 6}, Surroundings{3, 3}};
 constexpr Index near = 80; ///< neighbours that a residual is compared with: most know nothing of it
 
 /// What the nearest neighbours of each trusted sample have it off; those of `places` anew.
@@ -123,10 +123,11 @@ struct CloudJudge {
         return std::max(4 * median(std::move(values)), 2 * mean);
     }
 
-    /// Whether its neighbours are as badly predicted without it.
+    /// Whether neighbours are about as badly predicted without it: of many, for where places are
+    /// uneven some see little of the shape.
     bool unresolved(Index sample) const {
         double worst = 0;
-        for (Index i : cloud.nearest(sample, 6))
+        for (Index i : cloud.nearest(sample, 48))
             if (const Prediction there = cloud.predict(i, closest_around); there.exists())
                 worst = std::max(worst, there.normal());
         return cloud.predict(sample, closest_around).normal() <= 3 * worst;

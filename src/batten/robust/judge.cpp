@@ -67,28 +67,18 @@ double Judge::usual_around(Index sample, std::size_t axis) const {
 }
 
 Judge::Verdict Judge::of(Index sample) const {
-    std::vector<Verdict> by;
+    Verdict best;
     for (std::size_t axis = 0; axis < trusted_.axis_count(); ++axis) {
         const double usual = usual_around(sample, axis);
         for (std::span<const Stencil> stencils :
              {std::span<const Stencil>(to_both), std::span<const Stencil>(before),
               std::span<const Stencil>(behind)})
-            by.push_back(most_certain(sample, axis, stencils, usual));
+            for (const Stencil& stencil : stencils)
+                if (const Verdict one = by_stencil(sample, axis, stencil, usual);
+                    one.limit < best.limit)
+                    best = one;
     }
-    Verdict best = *std::ranges::min_element(by, {}, &Verdict::limit);
-    const double certain = 2 * best.limit;
-    for (const Verdict& one : by)
-        if (one.limit <= certain) best.part = std::min(best.part, one.part);
-    if (!std::isfinite(certain)) best.part = 0;
-    return best;
-}
-
-Judge::Verdict Judge::most_certain(Index sample, std::size_t axis,
-                                   std::span<const Stencil> stencils, double usual) const {
-    Verdict best;
-    for (const Stencil& stencil : stencils)
-        if (const Verdict one = by_stencil(sample, axis, stencil, usual); one.limit < best.limit)
-            best = one;
+    if (!std::isfinite(best.limit)) best.part = 0;
     return best;
 }
 
@@ -151,15 +141,29 @@ bool Judge::unresolved(Index sample, std::size_t axis, Index run) const {
         for (Index beside : around(trusted_, sample, axis, 2))
             if (const double r = least(beside, across); std::isfinite(r))
                 worst = std::max(worst, r);
-        if (here <= 3 * worst) return true;
+        if (here <= 4 * worst) return true;
     } else {
         least(sample, before);
         least(sample, behind);
     }
-    if (!trusted_.by_chords(axis) || trusted_.axis_count() > 1) return false;
-    const double usual_step = step(sample, axis);
-    if (usual_[axis].median > 0.01 * usual_step) return false; // there is noise to be seen
-    return off <= (run > 2 ? 1.5 : run > 1 || !inside ? 0.3 : 0.07) * usual_step;
+    if (!trusted_.by_chords(axis) || trusted_.axis_count() > 1 || noise_is_seen(sample, axis))
+        return false;
+    return off <= (run > 2 ? 1.5 : run > 1 || !inside ? 0.3 : 0.07) * step(sample, axis);
+}
+
+/// Shape is far worse predicted by those four times as far away, noise about as well.
+bool Judge::noise_is_seen(Index sample, std::size_t axis) const {
+    if (usual_[axis].median > 0.01 * step(sample, axis)) return true;
+    std::vector<double> by_near;
+    std::vector<double> by_far;
+    for (Index beside : around(trusted_, sample, axis, 16)) {
+        const Prediction near = trusted_.predict(beside, axis, closest);
+        const Prediction far = trusted_.predict(beside, axis, Stencil{4, 4, 3});
+        if (!near.exists() || !far.exists()) continue;
+        by_near.push_back(near.normal());
+        by_far.push_back(far.normal());
+    }
+    return !by_near.empty() && median(std::move(by_far)) <= 2 * median(std::move(by_near));
 }
 
 bool Judge::at_end(Index sample, std::size_t axis) const {

@@ -35,23 +35,21 @@ class Judge {
         Stencil by{};
     };
 
-    /// By the stencils that are most certain, of those along each axis to both sides, before the
-    /// sample and behind it: the one that explains it best of those that are about as certain.
-    /// Above 1 it is not explained; a sample without neighbours is.
+    /// By the stencil that is most certain, of those along each axis to both sides, before the
+    /// sample and behind it. Above 1 it is not explained; a sample without neighbours is.
     Verdict of(Index sample) const;
 
     /// Whether a sample that nothing explains may be a bend's own: along an axis its neighbours are
-    /// as badly predicted without it, or no noise is to be seen and it is off by less than 0.07 of
-    /// a step, at an end or in a pair 0.3, in a longer `run` 1.5.
+    /// about as badly predicted without it, or no noise is to be seen around it and it is off by
+    /// less than 0.07 of a step, at an end or in a pair 0.3, in a longer `run` 1.5.
     bool unresolved(Index sample, std::size_t axis, Index run) const;
 
   private:
     Verdict by_stencil(Index sample, std::size_t axis, const Stencil& stencil, double usual) const;
-    Verdict most_certain(Index sample, std::size_t axis, std::span<const Stencil> stencils,
-                         double usual) const;
     double smooth_residual(Index sample, std::size_t axis, const Stencil& stencil,
                            double reach) const;
     double usual_around(Index sample, std::size_t axis) const;
+    bool noise_is_seen(Index sample, std::size_t axis) const;
     bool at_end(Index sample, std::size_t axis) const;
     double step(Index sample, std::size_t axis) const;
 

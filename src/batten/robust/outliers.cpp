@@ -13,12 +13,13 @@ namespace batten {
 
 namespace {
 
-/// What a sample may be off in any case: its tolerance, or a small part of the data's size;
-/// anything where something is to hold.
+/// What a sample may be off in any case: its tolerance, or a small part of the data's size, of a
+/// cloud a larger one, for scattered neighbours tell less; anything where something is to hold.
 std::vector<double> least_residuals(const Problem& problem) {
     std::vector<double> least = problem.tolerance;
     if (least.empty())
-        least.assign(static_cast<std::size_t>(problem.samples.size()), 1e-4 * problem.size);
+        least.assign(static_cast<std::size_t>(problem.samples.size()),
+                     (problem.kind == SampleKind::cloud ? 1e-4 : 1e-9) * problem.size);
     constexpr double free = std::numeric_limits<double>::infinity();
     const HoldOptions& hold = problem.options.hold;
     for (Index i : hold.interpolate) least[static_cast<std::size_t>(i)] = free;

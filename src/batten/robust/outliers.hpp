@@ -11,8 +11,8 @@ struct WithoutOutliers {
     std::vector<Index> outliers;
 };
 
-/// Sets samples aside that are off beyond the tolerance (or 1e-4 of the data's size where none is
-/// stated) and disagree with their neighbours: of a curve or grid along its axes
+/// Sets samples aside that are off beyond the tolerance (where none is stated 1e-9 of the data's
+/// size, of a cloud 1e-4) and disagree with their neighbours: of a curve or grid along its axes
 /// (neighbour_outliers.hpp), of a cloud around them (cloud_outliers.hpp). Samples with something to
 /// hold never are.
 WithoutOutliers without_outliers(const Problem& problem);
