@@ -30,7 +30,9 @@ class AxisFactorization : public Factorization {
 std::unique_ptr<Factorization> factorize(const NormalSystem& system) {
     const auto factors = system.factors();
     if (!factors.empty()) return std::make_unique<AxisFactorization>(factors, system.controls());
-    return factorize_nested(system);
+    auto nested = std::make_unique<NestedCholesky>(system.axes());
+    nested->factor(system);
+    return nested;
 }
 
 std::unique_ptr<Factorization> factorize_axes(const NormalSystem& system) {

@@ -1,7 +1,5 @@
 #include <batten/solve/nested_cholesky.hpp>
 
-#include <batten/solve/net_dissection.hpp>
-
 #include <Eigen/Dense>
 
 namespace batten {
@@ -9,9 +7,21 @@ namespace batten {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
+using Columns = Eigen::Map<Matrix>;
+using ConstColumns = Eigen::Map<const Matrix>;
 using Part = NetDissection::Part;
 
 constexpr double smallest_pivot = 1e-14; // of the diagonal entry: below it rounding made the pivot
+
+Index reach_of(const Part& part) {
+    return static_cast<Index>(part.border.size());
+}
+
+ConstColumns columns_of(const Part& part, const std::vector<double>& values) {
+    return {values.data(), part.count + reach_of(part), part.count};
+}
+
+} // namespace
 
 /// A system's entries on and below the diagonal, its rows and columns in another order.
 class OrderedEntries {
@@ -27,7 +37,8 @@ class OrderedEntries {
             system.for_each_entry([&](Index i, Index j, double value) {
                 const Index row = place[static_cast<std::size_t>(i)];
                 const Index column = place[static_cast<std::size_t>(j)];
-                if (row >= column && value != 0) visit(row, static_cast<std::size_t>(column), value);
+                if (row >= column && value != 0)
+                    visit(row, static_cast<std::size_t>(column), value);
             });
         };
         each([&](Index, std::size_t column, double) { ++begin_[column + 1]; });
@@ -48,57 +59,34 @@ class OrderedEntries {
     std::vector<Entry> entries_;
 };
 
-class NestedCholesky : public Factorization {
-  public:
-    explicit NestedCholesky(const NormalSystem& system)
-        : net_(dissected(system.axes())), columns_(net_.parts.size()) {
-        const OrderedEntries entries(system, net_.place);
-        std::vector<Matrix> updates(net_.parts.size());
-        for (const auto& level : net_.levels)
-            for_each_chunk(static_cast<Index>(level.size()), [&](Index k) {
-                factor(level[static_cast<std::size_t>(k)], entries, updates);
-            });
-    }
-    PointSet solve(PointSet b) const override;
-
-  private:
-    const Part& part(Index index) const { return net_.parts[static_cast<std::size_t>(index)]; }
-    const Matrix& columns(Index index) const { return columns_[static_cast<std::size_t>(index)]; }
-    void factor(Index index, const OrderedEntries& entries, std::vector<Matrix>& updates);
-    void forward(Index index, Matrix& x, std::vector<Matrix>& sums) const;
-    void backward(Index index, Matrix& x) const;
-
-    NetDissection net_;
-    std::vector<Matrix> columns_; // of each part: L of itself, then of its border, (rows x count)
-};
+namespace {
 
 /// The part's columns of L from its entries and its children's updates, and its own update of its
 /// border.
-void NestedCholesky::factor(Index index, const OrderedEntries& entries,
-                            std::vector<Matrix>& updates) {
-    const Part& own = part(index);
-    const auto reach = static_cast<Index>(own.border.size());
-    Matrix& l = columns_[static_cast<std::size_t>(index)];
+void factor_part(const NetDissection& net, Index index, const OrderedEntries& entries,
+                 std::vector<double>& values, std::vector<Matrix>& updates) {
+    const Part& own = net.parts[static_cast<std::size_t>(index)];
+    const Index reach = reach_of(own);
+    values.assign(static_cast<std::size_t>((own.count + reach) * own.count), 0.0);
+    Columns l(values.data(), own.count + reach, own.count);
     Matrix& update = updates[static_cast<std::size_t>(index)];
-    l = Matrix::Zero(own.count + reach, own.count);
     update = Matrix::Zero(reach, reach);
     for (Index j = 0; j < own.count; ++j)
         for (const auto& [row, value] : entries.column(own.first + j)) {
             const Index i = row - own.first;
-            l(i < own.count ? i
-                            : own.count + (std::ranges::lower_bound(own.border, row) -
-                                           own.border.begin()),
+            l(i < own.count
+                  ? i
+                  : own.count + (std::ranges::lower_bound(own.border, row) - own.border.begin()),
               j) += value;
         }
     const Eigen::VectorXd diagonal = l.topRows(own.count).diagonal();
     for (const Index child : own.children) {
-        const std::vector<Index>& rows = part(child).in_parent;
+        const std::vector<Index>& rows = net.parts[static_cast<std::size_t>(child)].in_parent;
         Matrix& from = updates[static_cast<std::size_t>(child)];
         for (Index j = 0; j < from.cols(); ++j) {
             const Index column = rows[static_cast<std::size_t>(j)];
-            double* to = column < own.count
-                             ? l.col(column).data()
-                             : update.col(column - own.count).data() - own.count;
+            double* to = column < own.count ? l.col(column).data()
+                                            : update.col(column - own.count).data() - own.count;
             for (Index i = j; i < from.rows(); ++i)
                 to[rows[static_cast<std::size_t>(i)]] += from(i, j);
         }
@@ -117,14 +105,15 @@ void NestedCholesky::factor(Index index, const OrderedEntries& entries,
 }
 
 /// L^{-1} for the part's own rows; `sums` holds what parts add to their borders' right-hand sides.
-void NestedCholesky::forward(Index index, Matrix& x, std::vector<Matrix>& sums) const {
-    const Part& own = part(index);
-    const auto reach = static_cast<Index>(own.border.size());
+void forward(const NetDissection& net, Index index, const ConstColumns& l, Matrix& x,
+             std::vector<Matrix>& sums) {
+    const Part& own = net.parts[static_cast<std::size_t>(index)];
+    const Index reach = reach_of(own);
     Matrix& sum = sums[static_cast<std::size_t>(index)];
     sum = Matrix::Zero(reach, x.cols());
     auto mine = x.middleRows(own.first, own.count);
     for (const Index child : own.children) {
-        const std::vector<Index>& rows = part(child).in_parent;
+        const std::vector<Index>& rows = net.parts[static_cast<std::size_t>(child)].in_parent;
         Matrix& from = sums[static_cast<std::size_t>(child)];
         for (Index d = 0; d < x.cols(); ++d)
             for (Index i = 0; i < from.rows(); ++i) {
@@ -133,16 +122,13 @@ void NestedCholesky::forward(Index index, Matrix& x, std::vector<Matrix>& sums) 
             }
         from.resize(0, 0);
     }
-    const Matrix& l = columns(index);
     l.topRows(own.count).triangularView<Eigen::Lower>().solveInPlace(mine);
     if (reach > 0) sum.noalias() -= l.bottomRows(reach) * mine;
 }
 
 /// L^{-T} for the part's own rows, those of its border known.
-void NestedCholesky::backward(Index index, Matrix& x) const {
-    const Part& own = part(index);
-    const auto reach = static_cast<Index>(own.border.size());
-    const Matrix& l = columns(index);
+void backward(const Part& own, const ConstColumns& l, Matrix& x) {
+    const Index reach = reach_of(own);
     auto mine = x.middleRows(own.first, own.count);
     if (reach > 0) {
         Matrix beside(reach, x.cols());
@@ -154,29 +140,40 @@ void NestedCholesky::backward(Index index, Matrix& x) const {
     l.topRows(own.count).triangularView<Eigen::Lower>().transpose().solveInPlace(mine);
 }
 
+} // namespace
+
+NestedCholesky::NestedCholesky(const std::vector<KnotVector>& axes)
+    : net_(dissected(axes)), columns_(net_.parts.size()) {}
+
+void NestedCholesky::factor(const NormalSystem& system) {
+    const OrderedEntries entries(system, net_.place);
+    std::vector<Matrix> updates(net_.parts.size());
+    for (const auto& level : net_.levels)
+        for_each_chunk(static_cast<Index>(level.size()), [&](Index k) {
+            const Index index = level[static_cast<std::size_t>(k)];
+            factor_part(net_, index, entries, columns_[static_cast<std::size_t>(index)], updates);
+        });
+}
+
 PointSet NestedCholesky::solve(PointSet b) const {
     Matrix x(b.size(), b.dim());
     for (Index i = 0; i < b.size(); ++i)
         for (Index d = 0; d < b.dim(); ++d) x(net_.place[static_cast<std::size_t>(i)], d) = b(i, d);
     std::vector<Matrix> sums(net_.parts.size());
-    for (const auto& level : net_.levels)
+    const auto each = [&](const std::vector<Index>& level, auto work) {
         for_each_chunk(static_cast<Index>(level.size()), [&](Index k) {
-            forward(level[static_cast<std::size_t>(k)], x, sums);
+            const Index index = level[static_cast<std::size_t>(k)];
+            work(index, columns_of(part(index), columns_[static_cast<std::size_t>(index)]));
         });
-    for (std::size_t k = net_.levels.size(); k-- > 0;) {
-        const auto& level = net_.levels[k];
-        for_each_chunk(static_cast<Index>(level.size()),
-                       [&](Index i) { backward(level[static_cast<std::size_t>(i)], x); });
-    }
+    };
+    for (const auto& level : net_.levels)
+        each(level, [&](Index index, const ConstColumns& l) { forward(net_, index, l, x, sums); });
+    for (std::size_t k = net_.levels.size(); k-- > 0;)
+        each(net_.levels[k],
+             [&](Index index, const ConstColumns& l) { backward(part(index), l, x); });
     for (Index i = 0; i < b.size(); ++i)
         for (Index d = 0; d < b.dim(); ++d) b(i, d) = x(net_.place[static_cast<std::size_t>(i)], d);
     return b;
-}
-
-} // namespace
-
-std::unique_ptr<Factorization> factorize_nested(const NormalSystem& system) {
-    return std::make_unique<NestedCholesky>(system);
 }
 
 } // namespace batten
