@@ -150,8 +150,9 @@ void NestedCholesky::factor(const NormalSystem& system) {
     std::vector<Matrix> updates(net_.parts.size());
     for (const auto& level : net_.levels)
         for_each_chunk(static_cast<Index>(level.size()), [&](Index k) {
-            const Index index = level[static_cast<std::size_t>(k)];
-            factor_part(net_, index, entries, columns_[static_cast<std::size_t>(index)], updates);
+            const NetDissection::Run& run = level[static_cast<std::size_t>(k)];
+            for (Index i = run.begin; i < run.end; ++i)
+                factor_part(net_, i, entries, columns_[static_cast<std::size_t>(i)], updates);
         });
 }
 
@@ -160,17 +161,21 @@ PointSet NestedCholesky::solve(PointSet b) const {
     for (Index i = 0; i < b.size(); ++i)
         for (Index d = 0; d < b.dim(); ++d) x(net_.place[static_cast<std::size_t>(i)], d) = b(i, d);
     std::vector<Matrix> sums(net_.parts.size());
-    const auto each = [&](const std::vector<Index>& level, auto work) {
-        for_each_chunk(static_cast<Index>(level.size()), [&](Index k) {
-            const Index index = level[static_cast<std::size_t>(k)];
-            work(index, columns_of(part(index), columns_[static_cast<std::size_t>(index)]));
-        });
+    const auto columns = [&](Index i) {
+        const auto at = static_cast<std::size_t>(i);
+        return columns_of(net_.parts[at], columns_[at]);
     };
     for (const auto& level : net_.levels)
-        each(level, [&](Index index, const ConstColumns& l) { forward(net_, index, l, x, sums); });
-    for (std::size_t k = net_.levels.size(); k-- > 0;)
-        each(net_.levels[k],
-             [&](Index index, const ConstColumns& l) { backward(part(index), l, x); });
+        for_each_chunk(static_cast<Index>(level.size()), [&](Index k) {
+            const NetDissection::Run& run = level[static_cast<std::size_t>(k)];
+            for (Index i = run.begin; i < run.end; ++i) forward(net_, i, columns(i), x, sums);
+        });
+    for (std::size_t l = net_.levels.size(); l-- > 0;)
+        for_each_chunk(static_cast<Index>(net_.levels[l].size()), [&](Index k) {
+            const NetDissection::Run& run = net_.levels[l][static_cast<std::size_t>(k)];
+            for (Index i = run.end; i-- > run.begin;)
+                backward(net_.parts[static_cast<std::size_t>(i)], columns(i), x);
+        });
     for (Index i = 0; i < b.size(); ++i)
         for (Index d = 0; d < b.dim(); ++d) b(i, d) = x(net_.place[static_cast<std::size_t>(i)], d);
     return b;

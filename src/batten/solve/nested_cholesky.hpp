@@ -21,10 +21,6 @@ class NestedCholesky : public Factorization {
     PointSet solve(PointSet b) const override;
 
   private:
-    const NetDissection::Part& part(Index index) const {
-        return net_.parts[static_cast<std::size_t>(index)];
-    }
-
     NetDissection net_;
     /// Of each part: L of itself, then of its border, column by column.
     std::vector<std::vector<double>> columns_;

@@ -25,6 +25,8 @@ struct Box {
     }
 };
 
+constexpr Index small_runs = 16; // at least so many, each by one thread
+
 class Dissector {
   public:
     explicit Dissector(const std::vector<KnotVector>& axes)
@@ -73,10 +75,6 @@ class Dissector {
     /// Places the control points of `own` next; those of `all` are then eliminated.
     Index eliminate(const Box& own, const Box& all, std::vector<Index> children) {
         NetDissection::Part part{next_, own.size(), around(all), std::move(children)};
-        const auto index = static_cast<Index>(result_.parts.size());
-        std::size_t level = 0;
-        for (const Index child : part.children)
-            level = std::max(level, level_[static_cast<std::size_t>(child)] + 1);
         GridIndex::Place at = own.begin;
         for (Index i = 0; i < part.count; ++i) {
             result_.place[static_cast<std::size_t>(controls_.at(at))] = next_++;
@@ -85,11 +83,28 @@ class Dissector {
                 at[k] = own.begin[k];
             }
         }
-        level_.push_back(level);
-        if (result_.levels.size() <= level) result_.levels.resize(level + 1);
-        result_.levels[level].push_back(index);
+        const auto index = static_cast<Index>(result_.parts.size());
+        const auto parted = static_cast<std::size_t>(index);
+        begin_.push_back(part.children.empty()
+                             ? index
+                             : begin_[static_cast<std::size_t>(part.children.front())]);
+        level_.push_back(0);
+        if (all.size() * small_runs > controls_.size()) {
+            for (const Index child : part.children) {
+                std::size_t& below = level_[static_cast<std::size_t>(child)];
+                if (below == 0) append(below = 1, begin_[static_cast<std::size_t>(child)], child);
+                level_[parted] = std::max(level_[parted], below);
+            }
+            append(++level_[parted], index, index);
+        }
         result_.parts.push_back(std::move(part));
         return index;
+    }
+
+    /// A run to a level counted from one.
+    void append(std::size_t level, Index first, Index last) {
+        if (result_.levels.size() < level) result_.levels.resize(level);
+        result_.levels[level - 1].push_back({first, last + 1});
     }
 
     /// Control points beside a box that couple with it.
@@ -137,7 +152,8 @@ class Dissector {
     const std::vector<KnotVector>& axes_;
     GridIndex controls_;
     NetDissection result_;
-    std::vector<std::size_t> level_; // of each part
+    std::vector<Index> begin_;       // of each part the first of those that lead to it
+    std::vector<std::size_t> level_; // of each part's run, from one; zero within one
     Index next_ = 0;
 };
 

@@ -20,9 +20,14 @@ struct NetDissection {
         std::vector<Index> in_parent{}; ///< for each of the border its row there: among the
                                         ///< parent's own, or after these in its border
     };
-    std::vector<Part> parts;                ///< children before their parents
-    std::vector<std::vector<Index>> levels; ///< parts that do not wait for each other, lowest first
-    std::vector<Index> place;               ///< of each control point in the order
+    /// Parts [begin, end), each after its children.
+    struct Run {
+        Index begin;
+        Index end;
+    };
+    std::vector<Part> parts;              ///< children before their parents
+    std::vector<std::vector<Run>> levels; ///< runs that do not wait for each other, lowest first
+    std::vector<Index> place;             ///< of each control point in the order
 };
 
 /// Control points couple with those up to the degree away along each axis.
