@@ -34,6 +34,15 @@ double balancing_factor(const NormalSystem& system, int order) {
 
 } // namespace
 
+double largest_factor(const NormalSystem& system, int order, Solution solution) {
+    constexpr double of_entries = 1e10; // of the condition that the roughness's share makes
+    constexpr double of_rows = 1e20;    // theirs is the root, their numbers have 19 digits
+    const bool product = system.of_grid() || !system.factors().empty();
+    const auto axes = product ? static_cast<double>(system.axes().size()) : 1.0;
+    return balancing_factor(system, order) *
+           (solution == Solution::rows ? of_rows : std::pow(of_entries, 1 / axes));
+}
+
 double total_weight(const NormalSystem& system) {
     PointSet ones(system.size(), 1); // B-splines sum to one
     ones.fill(1);

@@ -53,6 +53,13 @@ class FactorSearch {
     std::map<double, Quality> seen_;
 };
 
+/// What a solution works on: the normal equations' entries, or the samples' rows.
+enum class Solution { entries, rows };
+
+/// The largest factor of the roughness beside which a system keeps six digits of what no
+/// roughness sees, as polynomials.
+double largest_factor(const NormalSystem& system, int order, Solution solution);
+
 /// Sum of the weights of a system's samples.
 double total_weight(const NormalSystem& system);
 
