@@ -188,6 +188,12 @@ class Smoothing(InFolder):
         self.assertLess(np.median(ratios), 1.05)
         self.assertLess(max(ratios), 2.5)
 
+    def test_a_large_net_through_few_samples_is_smoothed_too(self):
+        for count in (8, 50):
+            place = np.random.default_rng(14).random((count, 2))
+            spline, _ = self.fit(np.column_stack([place, np.sin(5 * place[:, 0])]), "--project", "xy", "--smooth", "auto", "-n", "72x75")
+            self.assertTrue(np.isfinite(spline["control_points"]).all())
+
     def sheet(self):
         rng = np.random.default_rng(11)
         place = rng.random((900, 2))

@@ -110,9 +110,9 @@ std::pair<Samples, Parameters> thinned(const Samples& samples, const Parameters&
 }
 
 /// A factor near the best one of a cloud: of coarser nets through so many samples fewer, until one
-/// has a few control points per degree of freedom along each axis.
-double coarsely_chosen(const NormalSystem& system, const Samples& samples,
-                       const Parameters& parameters, int order) {
+/// has a few control points per degree of freedom along each axis; none where no samples are left.
+std::optional<double> coarsely_chosen(const NormalSystem& system, const Samples& samples,
+                                      const Parameters& parameters, int order) {
     constexpr double per_freedom = 4;
     const std::size_t count = system.axes().size();
     const auto axes_count = static_cast<double>(count);
@@ -141,7 +141,7 @@ double coarsely_chosen(const NormalSystem& system, const Samples& samples,
         last = search.factor(best) * more;
         if (std::pow(search.quality(best).trace, 1 / axes_count) * per_freedom <= most) break;
     }
-    return *last;
+    return last;
 }
 
 } // namespace
@@ -161,8 +161,8 @@ Smoothing cross_validated(const NormalSystem& system, const Samples& samples,
     FactorSearch search(system, samples, parameters, order);
     double best = 0;
     if (large_cloud)
-        best =
-            search.settled(search.doublings(coarsely_chosen(system, samples, parameters, order)));
+        if (const auto near = coarsely_chosen(system, samples, parameters, order))
+            best = search.settled(search.doublings(*near));
     if (!large_cloud || !std::isfinite(search.score(best)))
         best = search.levelled(search.scanned());
     const Quality chosen = search.quality(best);

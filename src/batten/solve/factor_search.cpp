@@ -122,12 +122,13 @@ double FactorSearch::tilt(double doublings) {
 
 double FactorSearch::settled(double start) {
     constexpr double level = 0.25;
+    constexpr double longest = 64;
     constexpr int most_rounds = 4;
     double at = start;
     double tilted = tilt(at);
     double before = at;
     double tilted_before = tilted;
-    for (double step = 2; !(std::abs(tilted) < level); step *= 2) {
+    for (double step = 2; step <= longest && !(std::abs(tilted) < level); step *= 2) {
         if (!(tilted > 0 ? has_less(at) : has_more(at))) return at;
         before = std::exchange(at, tilted > 0 ? at - step : at + step);
         tilted_before = std::exchange(tilted, tilt(at));
@@ -149,8 +150,10 @@ double FactorSearch::settled(double start) {
 
 double FactorSearch::telling(double doublings) {
     constexpr double less = 0.9;
-    while (has_more(doublings) &&
-           !(quality(doublings + step()).trace < less * quality(doublings).trace))
+    constexpr int most_steps = 32;
+    for (int k = 0; k < most_steps && has_more(doublings) &&
+                    !(quality(doublings + step()).trace < less * quality(doublings).trace);
+         ++k)
         doublings += step();
     return doublings;
 }
