@@ -5,6 +5,8 @@ import unittest
 
 import numpy as np
 from scipy.interpolate import BSpline
+from scipy.sparse import csr_matrix, kron, vstack
+from scipy.sparse.linalg import spsolve
 
 from judge import InFolder, some
 
@@ -156,6 +158,103 @@ class Smoothing(InFolder):
             ratios.append(error(np.array(spline["control_points"])) / min(errors))
         self.assertLess(np.median(ratios), 1.05)
         self.assertLess(max(ratios), 2.5)
+
+    def test_a_clouds_factor_comes_near_the_best_one(self):
+        ratios = []
+        for seed in some(range(6)):
+            rng = np.random.default_rng(400 + seed)
+            count, noise = 20000, 10.0 ** rng.uniform(-3, -0.5)
+            place = [rng.random((count, 2)), rng.random((count, 2)) ** 2, rng.normal(0, 0.2, (2 * count, 2)) % 1][seed % 3]
+            if seed % 3 == 2:  # a hole
+                place = place[np.hypot(*(place.T - 0.4)) > 0.15][:count]
+            x, y = (place.T - 0.5) * (4 if seed < 3 else 20)
+            clean = x * np.exp(-x * x - y * y)
+            points = np.column_stack([place, clean + rng.normal(0, noise, clean.size)])
+            spline, summary = self.fit(points, "--project", "xy", "--smooth", "auto", "-n", "72x75")
+            knots = [np.array(k) for k in spline["knots"]]
+            a, b = (BSpline.design_matrix(np.clip(t, k[3], k[-4]), k, 3).toarray() for t, k in zip(place.T, knots))
+            rows = vstack(
+                [csr_matrix(np.einsum("ki,kj->kij", a[s:s + 500], b[s:s + 500]).reshape(-1, a.shape[1] * b.shape[1])) for s in range(0, clean.size, 500)])
+            gram = lambda r: r.T @ r
+            rough = [csr_matrix(gram(rough_rows(k, 3, 2)).astype(float)) for k in knots]
+            mass = [csr_matrix(gram(rough_rows(k, 3, 0)).astype(float)) for k in knots]
+            penalty = kron(rough[0], mass[1]) + kron(mass[0], rough[1])
+            error = lambda heights: np.sqrt(((rows @ heights - clean) ** 2).mean())
+            errors = []
+            for decades in np.arange(-2, 2.1, 0.5):
+                system = rows.T @ rows / clean.size + summary["smoothing"] * 10 ** decades * penalty
+                errors.append(error(spsolve(system.tocsc(), rows.T @ points[:, 2] / clean.size)))
+            ratios.append(error(np.array(spline["control_points"])[:, 2]) / min(errors))
+        self.assertLess(np.median(ratios), 1.05)
+        self.assertLess(max(ratios), 2.5)
+
+    def test_a_large_net_through_few_samples_is_smoothed_too(self):
+        for count in (8, 50):
+            place = np.random.default_rng(14).random((count, 2))
+            spline, _ = self.fit(np.column_stack([place, np.sin(5 * place[:, 0])]), "--project", "xy", "--smooth", "auto", "-n", "72x75")
+            self.assertTrue(np.isfinite(spline["control_points"]).all())
+
+    def sheet(self):
+        rng = np.random.default_rng(11)
+        place = rng.random((900, 2))
+        u, v = np.linspace(0, 1, 20), np.linspace(0, 1, 24)
+        grid = np.stack([*np.meshgrid(u, v, indexing="ij"), np.sin(5 * u)[:, None] * np.cos(4 * v) + rng.normal(0, 0.05, (20, 24))], axis=-1)
+        t = np.linspace(0, 1, 80)
+        return ((np.column_stack([t, np.sin(7 * t) + rng.normal(0, 0.05, 80)]), ("-n", 12)), (grid, ("-n", "8x9")),
+                (np.column_stack([place, np.sin(5 * place[:, 0]) * place[:, 1] + rng.normal(0, 0.05, 900)]), ("--project", "xy", "-n", "7x8")))
+
+    def test_weights_count_by_their_ratios(self):
+        for points, arguments in self.sheet():
+            count = points.size // points.shape[-1]
+            uneven = 10.0 ** np.random.default_rng(12).uniform(-2, 2, count)
+            for method in ("direct", "cg", "lspia", "mlspia", "clspia", "chebyshev", "nesterov", "barzilai-borwein"):
+                for smoothing in ((), ("--smooth", "auto"), ("--smooth", 1e-6)):
+                    def control(weights):
+                        return np.array(self.fit(points, *arguments, "-m", method, "--max-iterations", 300, *smoothing, weights=weights)[0]["control_points"])
+                    plain, usual = control(None), control(uneven)
+                    with self.subTest(method=method, smoothing=smoothing, arguments=arguments):
+                        for weight in (2, 7, 1e-200, 1e200):  # alike: as none
+                            np.testing.assert_array_equal(control(np.full(count, weight)), plain)
+                        for factor in (2.0 ** -7, 2.0 ** 660, 2.0 ** -660):
+                            np.testing.assert_array_equal(control(uneven * factor), usual)
+                        if method == "direct":
+                            self.assertLess(abs(control(uneven * 1e-200) - usual).max(), 1e-10)
+
+    def test_the_size_of_weights_is_in_gradients_alone(self):
+        points, arguments = self.sheet()[0]
+        reports = [self.fit(points, *arguments, "-m", "lspia", "--stop-gradient", 1e-6 * weight, weights=np.full(80, weight))[1] for weight in (1, 8)]
+        self.assertEqual(reports[0]["iterations"], reports[1]["iterations"])
+        self.assertEqual(8 * reports[0]["gradient_norm"], reports[1]["gradient_norm"])
+        self.assertEqual(reports[0]["settings"]["mu"], 8 * reports[1]["settings"]["mu"])
+        done = self.attempt(points, *arguments, weights=np.where(np.arange(80) == 3, 1e-200, 1e200))
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn("weights: 1e-200 and 1e+200 are too far apart", done.stderr)
+        done = self.attempt(points, "-m", "pia", weights=np.full(80, 3))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("method pia cannot weigh samples", done.stderr)
+
+    def test_weights_of_extreme_size_leave_the_functional_at_its_minimum(self):
+        rng = np.random.default_rng(13)
+        t = np.sort(rng.random(100))
+        points = np.column_stack([t, np.sin(9 * t)]) + rng.normal(0, 0.02, (100, 2))
+        for size in (1e-200, 1e200):
+            weights = size * 10.0 ** rng.uniform(-1, 1, 100)
+            for method in ("direct", "cg"):
+                spline, _ = self.fit(points, "-m", method, "--smooth", 1e-6, "-n", 20, t=t, weights=weights)
+                self.judge(spline, t, points, weights / size, 1e-6, 2)
+
+    def test_a_factor_beyond_rounding_is_refused_with_the_largest_one(self):
+        for points, arguments in self.sheet():
+            count = points.size // points.shape[-1]
+            for weights in (None, np.linspace(1, 2, count)):
+                for order in (2, 3):
+                    for method in ("auto", "direct", "cg"):
+                        smooth = lambda factor: self.attempt(points, *arguments, "-m", method, "--smooth", factor, "--smooth-order", order, weights=weights)
+                        done = smooth(1e300)
+                        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+                        self.assertRegex(done.stderr, "the largest factor that method .* can tell from an infinite one here is")
+                        largest = 0.9 * float(done.stderr.split()[-1])
+                        self.assertEqual(smooth(largest).returncode, 0, smooth(largest).stderr)
 
     def test_no_unit_counts(self):
         rng = np.random.default_rng(5)

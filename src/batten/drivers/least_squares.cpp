@@ -11,11 +11,13 @@
 #include <batten/shape/polygon.hpp>
 #include <batten/solve/cross_validation.hpp>
 #include <batten/solve/direct.hpp>
+#include <batten/solve/factor_search.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/solve/keep_shape.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <optional>
 
 namespace batten {
@@ -69,6 +71,20 @@ Equations assembled(const Problem& problem, std::string_view method) {
 /// Whether the number of control points is this library's choice.
 bool size_is_open(const Problem& problem) {
     return problem.options.shape.control_points.empty() && problem.options.shape.knots.empty();
+}
+
+/// Throws InvalidInput where a stated factor leaves nothing of the samples in rounded numbers.
+void check_factor(const NormalSystem& system, const Problem& problem, std::string_view method) {
+    const auto& [wanted, lambda, order] = problem.options.smooth;
+    if (!wanted || lambda == 0) return;
+    const bool rows = method == "direct" && !system.factors().empty() &&
+                      problem.options.hold.preserve == Preserve::nothing;
+    const double most = largest_factor(system, order, rows ? Solution::rows : Solution::entries);
+    if (lambda > most)
+        throw InvalidInput(
+            fmt::format("smoothing by {}: the largest factor that method {} can tell "
+                        "from an infinite one here is {:.2g}",
+                        lambda, method, most));
 }
 
 /// The given or cross-validated smoothing; of a given one only the factor is known where nothing
@@ -176,6 +192,7 @@ Fitted fit_least_squares(const Problem& problem, std::string_view method) {
     Equations equations = assembled(problem, method);
     problem.stop_if_cancelled();
     const double assemble_seconds = watch.lap();
+    check_factor(*equations.system, problem, method);
     const Smoothing smoothing = smoothing_of(*equations.system, problem);
     if (const auto fewer = fewer_control_points(problem, smoothing.axis_freedom)) {
         Problem smaller = problem;

@@ -4,10 +4,12 @@
 #include <batten/drivers/choose.hpp>
 #include <batten/fit/account.hpp>
 #include <batten/fit/rescale.hpp>
+#include <batten/fit/reweight.hpp>
 #include <batten/measure/deviation.hpp>
 #include <batten/problem/subset.hpp>
 #include <batten/robust/outliers.hpp>
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace batten {
@@ -81,8 +83,16 @@ FitResult fit(const Samples& samples, const FitOptions& options) {
     check_settings(method_entry(options.method.name), options.method.settings);
     if (const double unit = usual_unit(samples.points); unit != 1)
         return rescaled(fit(rescaled(samples, unit), rescaled(options, unit)), 1 / unit);
+    if (const double unit = usual_weight(samples.weights); unit != 1) {
+        check(samples); // names what the caller stated
+        return reweighted(fit(reweighted(samples, unit), reweighted(options, unit)), unit);
+    }
     Stopwatch watch;
-    const Problem problem = problem_of(samples, options);
+    Problem problem = problem_of(samples, options);
+    if (std::ranges::all_of(samples.weights, [](double w) { return w == 1; })) {
+        choose(problem); // refuses what cannot weigh samples
+        problem.samples.weights.clear();
+    }
     if (options.outliers == Outliers::count) return solved(problem, watch.lap());
     choose(problem); // refuses what cannot be before the work is done
     const WithoutOutliers found = without_outliers(problem);

@@ -13,6 +13,7 @@ namespace batten {
 namespace {
 
 constexpr Index block_size = 1 << 16;
+constexpr double smallest_part = 1e-250; // of the largest weight: products with it stay numbers
 
 void check_shape(const Samples& samples) {
     if (samples.size() == 0) throw InvalidInput("samples: there are none");
@@ -58,6 +59,12 @@ void check_weights(const Samples& samples) {
         if (!(samples.weights[i] > 0) || !std::isfinite(samples.weights[i]))
             throw InvalidInput(
                 fmt::format("weight {}: {} must be positive and finite", i, samples.weights[i]));
+    const auto [least, largest] = std::ranges::minmax(samples.weights);
+    if (least / largest < smallest_part)
+        throw InvalidInput(
+            fmt::format("weights: {} and {} are too far apart, the larger must be at "
+                        "most {} times the smaller",
+                        least, largest, 1 / smallest_part));
 }
 
 } // namespace

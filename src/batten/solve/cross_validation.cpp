@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <random>
 #include <utility>
 
 namespace batten {
@@ -88,6 +89,61 @@ std::optional<Smoothing> chosen_on_coarser(const NormalSystem& system, const Sam
     }
 }
 
+/// About one sample in `part`, the same in every run.
+std::pair<Samples, Parameters> thinned(const Samples& samples, const Parameters& parameters,
+                                       unsigned part) {
+    std::mt19937_64 random(1);
+    std::vector<double> points;
+    std::vector<double> scattered;
+    Samples some;
+    for (Index i = 0; i < samples.size(); ++i) {
+        if (random() % part != 0) continue;
+        const auto at = samples.points[i];
+        const auto t = parameters.scattered[i];
+        points.insert(points.end(), at.begin(), at.end());
+        scattered.insert(scattered.end(), t.begin(), t.end());
+        if (!samples.weights.empty())
+            some.weights.push_back(samples.weights[static_cast<std::size_t>(i)]);
+    }
+    some.points = PointSet(std::move(points), samples.dim());
+    return {std::move(some), {{}, PointSet(std::move(scattered), parameters.scattered.dim())}};
+}
+
+/// A factor near the best one of a cloud: of coarser nets through so many samples fewer, until one
+/// has a few control points per degree of freedom along each axis; none where no samples are left.
+std::optional<double> coarsely_chosen(const NormalSystem& system, const Samples& samples,
+                                      const Parameters& parameters, int order) {
+    constexpr double per_freedom = 4;
+    const std::size_t count = system.axes().size();
+    const auto axes_count = static_cast<double>(count);
+    std::optional<double> last; // for all samples
+    for (int halvings = 2; halvings > 0; --halvings) {
+        std::vector<KnotVector> axes;
+        double most = 1; // control points along an axis
+        for (const KnotVector& axis : system.axes()) {
+            const Index n = std::max<Index>(axis.free_count() >> halvings, axis.degree() + 1);
+            axes.push_back(
+                uniform_knots(axis.degree(), n, axis.begin(), axis.end(), axis.closure()));
+            most *= static_cast<double>(n);
+        }
+        most = std::pow(most, 1 / axes_count);
+        const auto [some, places] =
+            thinned(samples, parameters, 1U << static_cast<unsigned>(count) * halvings);
+        if (some.size() == 0) continue;
+        // noise of variance s / m is smoothed by (s / m)^(2 r / (2 r + d)) [Wahba1990]
+        const double more =
+            std::pow(static_cast<double>(some.size()) / static_cast<double>(samples.size()),
+                     2 * order / (2 * order + axes_count));
+        const auto coarse = assemble(axes, some, places);
+        FactorSearch search(*coarse, some, places, order);
+        const double best = search.telling(
+            search.settled(last ? search.doublings(*last / more) : search.scanned()));
+        last = search.factor(best) * more;
+        if (std::pow(search.quality(best).trace, 1 / axes_count) * per_freedom <= most) break;
+    }
+    return last;
+}
+
 } // namespace
 
 double noise_left(double mean_square, double m, double freedom) {
@@ -96,12 +152,19 @@ double noise_left(double mean_square, double m, double freedom) {
 
 Smoothing cross_validated(const NormalSystem& system, const Samples& samples,
                           const Parameters& parameters, int order) {
-    constexpr Index few = 5000; // control points whose factorisation costs little
-    if (system.factors().empty() && parameters.is_scattered() && system.size() > few)
+    constexpr Index few = 5000;     // control points whose factorisation costs little
+    constexpr Index many = 1 << 16; // much
+    const bool large_cloud = parameters.is_scattered() && system.size() > few;
+    if (large_cloud && system.size() > many)
         if (const auto coarse = chosen_on_coarser(system, samples, parameters, order))
             return *coarse;
     FactorSearch search(system, samples, parameters, order);
-    const double best = search.levelled(search.scanned());
+    double best = 0;
+    if (large_cloud)
+        if (const auto near = coarsely_chosen(system, samples, parameters, order))
+            best = search.settled(search.doublings(*near));
+    if (!large_cloud || !std::isfinite(search.score(best)))
+        best = search.levelled(search.scanned());
     const Quality chosen = search.quality(best);
     if (!std::isfinite(chosen.squares))
         throw SolverError("no smoothing makes the samples determine every control point");

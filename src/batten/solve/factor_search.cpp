@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace batten {
 
@@ -32,6 +33,15 @@ double balancing_factor(const NormalSystem& system, int order) {
 }
 
 } // namespace
+
+double largest_factor(const NormalSystem& system, int order, Solution solution) {
+    constexpr double of_entries = 1e10; // of the condition that the roughness's share makes
+    constexpr double of_rows = 1e20;    // theirs is the root, their numbers have 19 digits
+    const bool product = system.of_grid() || !system.factors().empty();
+    const auto axes = product ? static_cast<double>(system.axes().size()) : 1.0;
+    return balancing_factor(system, order) *
+           (solution == Solution::rows ? of_rows : std::pow(of_entries, 1 / axes));
+}
 
 double total_weight(const NormalSystem& system) {
     PointSet ones(system.size(), 1); // B-splines sum to one
@@ -76,25 +86,76 @@ double FactorSearch::score(double doublings) {
     return left > 0 ? q.squares / m_ / (left * left) : std::numeric_limits<double>::infinity();
 }
 
+bool FactorSearch::has_less(double doublings) {
+    return quality(doublings).trace < size_ * (1 - (quality_->estimated() ? 0.01 : 1e-4));
+}
+
+bool FactorSearch::has_more(double doublings) {
+    return quality(doublings).trace > polynomials_ + (quality_->estimated() ? 2 : 1e-3);
+}
+
 double FactorSearch::scanned() {
     constexpr int most_steps = 64;
     double best = 0;
     const auto see = [&](double doublings) {
         if (score(doublings) < score(best)) best = doublings;
     };
-    const double all = size_ * (1 - (quality_->estimated() ? 0.01 : 1e-4));
-    const double none = polynomials_ + (quality_->estimated() ? 2 : 1e-3);
-    for (int k = 1; k <= most_steps && quality(-step() * (k - 1)).trace < all; ++k)
-        see(-step() * k);
-    for (int k = 1; k <= most_steps && quality(step() * (k - 1)).trace > none; ++k) see(step() * k);
+    for (int k = 1; k <= most_steps && has_less(-step() * (k - 1)); ++k) see(-step() * k);
+    for (int k = 1; k <= most_steps && has_more(step() * (k - 1)); ++k) see(step() * k);
     return best;
 }
 
 double FactorSearch::descended(double start) {
     double best = start;
-    for (const double step : {-this->step(), this->step()})
-        while (score(best + step) < score(best)) best += step;
+    while (has_less(best) && score(best - step()) < score(best)) best -= step();
+    if (best == start)
+        while (has_more(best) && score(best + step()) < score(best)) best += step();
     return best;
+}
+
+double FactorSearch::tilt(double doublings) {
+    const Quality q = quality(doublings);
+    const double left = m_ - q.trace;
+    if (!std::isfinite(q.squares)) return -std::numeric_limits<double>::infinity();
+    return std::log(q.squares_growth * left / (-2 * q.trace_growth * q.squares));
+}
+
+double FactorSearch::settled(double start) {
+    constexpr double level = 0.25;
+    constexpr double longest = 64;
+    constexpr int most_rounds = 4;
+    double at = start;
+    double tilted = tilt(at);
+    double before = at;
+    double tilted_before = tilted;
+    for (double step = 2; step <= longest && !(std::abs(tilted) < level); step *= 2) {
+        if (!(tilted > 0 ? has_less(at) : has_more(at))) return at;
+        before = std::exchange(at, tilted > 0 ? at - step : at + step);
+        tilted_before = std::exchange(tilted, tilt(at));
+        if ((tilted > 0) != (tilted_before > 0)) break;
+    }
+    for (int round = 0; round < most_rounds && !(std::abs(tilted) < level); ++round) {
+        double next = (at * tilted_before - before * tilted) / (tilted_before - tilted);
+        if (!std::isfinite(next)) next = (at + before) / 2;
+        const double tilted_next = tilt(next);
+        if ((tilted_next > 0) != (tilted > 0)) {
+            before = at;
+            tilted_before = tilted;
+        }
+        at = next;
+        tilted = tilted_next;
+    }
+    return at;
+}
+
+double FactorSearch::telling(double doublings) {
+    constexpr double less = 0.9;
+    constexpr int most_steps = 32;
+    for (int k = 0; k < most_steps && has_more(doublings) &&
+                    !(quality(doublings + step()).trace < less * quality(doublings).trace);
+         ++k)
+        doublings += step();
+    return doublings;
 }
 
 double FactorSearch::lowest(double best) {

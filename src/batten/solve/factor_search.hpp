@@ -23,8 +23,13 @@ class FactorSearch {
 
     /// The best of steps to both sides, until all freedom is there or none but the polynomials'.
     double scanned();
-    /// The best that steps from a start lead to.
+    /// The best that steps from a start lead to, until then, too.
     double descended(double start);
+    /// Of a cloud: where V is level, from the nearest place to a start that is.
+    double settled(double start);
+    /// The first of steps to larger factors from where the freedom depends on the factor: below
+    /// that the net is too coarse to tell.
+    double telling(double doublings);
     /// Near the best of steps, where V is level: alike to both sides, found by the Illinois variant
     /// of false position.
     double levelled(double best);
@@ -32,6 +37,12 @@ class FactorSearch {
     double lowest(double best);
 
   private:
+    /// Whether a smaller factor leaves more freedom, or a larger one less.
+    bool has_less(double doublings);
+    bool has_more(double doublings);
+    /// The logarithm of the growth of RSS over that of (1 - trace / m)^2, relative to these: more
+    /// than 0 where V grows with the factor, and nearly linear.
+    double tilt(double doublings);
     double step() const { return quality_->estimated() ? 4 : 2; }
 
     std::unique_ptr<SmoothingQuality> quality_;
@@ -41,6 +52,13 @@ class FactorSearch {
     double polynomials_ = 1; ///< that no roughness sees
     std::map<double, Quality> seen_;
 };
+
+/// What a solution works on: the normal equations' entries, or the samples' rows.
+enum class Solution { entries, rows };
+
+/// The largest factor of the roughness beside which a system keeps six digits of what no
+/// roughness sees, as polynomials.
+double largest_factor(const NormalSystem& system, int order, Solution solution);
 
 /// Sum of the weights of a system's samples.
 double total_weight(const NormalSystem& system);

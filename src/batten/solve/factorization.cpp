@@ -1,9 +1,7 @@
 #include <batten/solve/factorization.hpp>
 
 #include <batten/solve/banded_cholesky.hpp>
-
-#include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
+#include <batten/solve/nested_cholesky.hpp>
 
 namespace batten {
 
@@ -27,39 +25,14 @@ class AxisFactorization : public Factorization {
     GridIndex controls_;
 };
 
-class SparseFactorization : public Factorization {
-  public:
-    explicit SparseFactorization(const NormalSystem& system) {
-        std::vector<Eigen::Triplet<double>> entries;
-        system.for_each_entry([&](Index i, Index j, double value) {
-            if (i >= j) entries.emplace_back(static_cast<int>(i), static_cast<int>(j), value);
-        });
-        Eigen::SparseMatrix<double> matrix(system.size(), system.size());
-        matrix.setFromTriplets(entries.begin(), entries.end());
-        solver_.compute(matrix);
-        const bool good = solver_.info() == Eigen::Success;
-        const auto& pivots = solver_.vectorD();
-        if (!good || !(pivots.minCoeff() > 1e-14 * pivots.maxCoeff()))
-            throw SolverError("the normal equations are singular: some control points are not "
-                              "determined by the samples");
-    }
-    PointSet solve(PointSet b) const override {
-        using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-        Eigen::Map<Rows> rows(b.data(), b.size(), b.dim());
-        rows = solver_.solve(Eigen::MatrixXd(rows));
-        return b;
-    }
-
-  private:
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
-};
-
 } // namespace
 
 std::unique_ptr<Factorization> factorize(const NormalSystem& system) {
     const auto factors = system.factors();
     if (!factors.empty()) return std::make_unique<AxisFactorization>(factors, system.controls());
-    return std::make_unique<SparseFactorization>(system);
+    auto nested = std::make_unique<NestedCholesky>(system.axes());
+    nested->factor(system);
+    return nested;
 }
 
 std::unique_ptr<Factorization> factorize_axes(const NormalSystem& system) {

@@ -17,7 +17,7 @@ class Factorization {
     virtual PointSet solve(PointSet b) const = 0;
 };
 
-/// Banded Cholesky axis by axis where the system has factors, else sparse Cholesky of its entries.
+/// Banded Cholesky axis by axis where the system has factors, else by nested dissection of the net.
 /// Throws SolverError when the samples do not determine every control point.
 std::unique_ptr<Factorization> factorize(const NormalSystem& system);
 

@@ -1,5 +1,6 @@
 #include <batten/solve/smoothing_quality.hpp>
 
+#include <batten/solve/nested_cholesky.hpp>
 #include <batten/solve/residual_system.hpp>
 
 #include <algorithm>
@@ -58,24 +59,52 @@ PointSet probes(Index rows) {
     return result;
 }
 
-/// What a spline leaves of the samples, as normal equations.
-struct Residuals {
+/// Some control points and what they leave of the samples, to judge others by.
+struct Reference {
     PointSet control;
-    std::unique_ptr<NormalSystem> system;
+    Residuals residuals;
+    const NormalSystem& system;
 
-    Residuals(PointSet reference, const NormalSystem& of, const Samples& samples,
+    Reference(PointSet reference, const NormalSystem& of, const Samples& samples,
               const Parameters& parameters)
         : control(std::move(reference)),
-          system(residual_system(Spline::from_free(of.axes(), uncentred(control, of.centre())),
-                                 of.axes(), samples, parameters)) {}
+          residuals(residuals_of(control, of, samples, parameters)),
+          system(of) {}
 
-    /// Sum of the weighted squares for other control points than the reference.
-    double squares(PointSet other) const {
+    /// A^T D r of other control points.
+    PointSet pulls(PointSet other) const {
         add_scaled(other, -1.0, control);
-        other = centred(other, system->centre());
-        return std::max(0.0, system->data_energy() + system->energy(other));
+        PointSet image(other.size(), other.dim());
+        system.apply(other, image);
+        PointSet result = residuals.pulls;
+        add_scaled(result, -1.0, image);
+        return result;
+    }
+    /// The weighted squares that other control points leave, from their pulls.
+    double squares(PointSet other, const PointSet& left) const {
+        add_scaled(other, -1.0, control);
+        return std::max(0.0, residuals.squares - inner_product(other, residuals.pulls) -
+                                 inner_product(other, left));
     }
 };
+
+/// Points of two sets side by side.
+PointSet beside(const PointSet& left, const PointSet& right) {
+    PointSet result(left.size(), left.dim() + right.dim());
+    for (Index i = 0; i < left.size(); ++i) {
+        std::ranges::copy(left[i], result[i].begin());
+        std::ranges::copy(right[i], result[i].begin() + left.dim());
+    }
+    return result;
+}
+
+/// So many coordinates of all points from one on.
+PointSet coordinates(const PointSet& points, Index first, Index count) {
+    PointSet result(points.size(), count);
+    for (Index i = 0; i < points.size(); ++i)
+        for (Index d = 0; d < count; ++d) result(i, d) = points(i, first + d);
+    return result;
+}
 
 /// As a whole: the residuals are those of the first factor that is judged and what changes from
 /// there, the trace is estimated.
@@ -88,7 +117,8 @@ class NetQuality : public SmoothingQuality {
           parameters_(parameters),
           order_(order),
           probes_(probes(system.size())),
-          images_(probes_.size(), probes_.dim()) {
+          images_(probes_.size(), probes_.dim()),
+          factor_(system.axes()) {
         system.apply(probes_, images_);
     }
 
@@ -97,12 +127,28 @@ class NetQuality : public SmoothingQuality {
     Quality operator()(double lambda) const override {
         const auto smoothed = system_.clone();
         smoothed->add_roughness(lambda, order_);
-        const auto factor = factorize(*smoothed);
-        const PointSet control = factor->solve(system_.rhs());
-        if (!residuals_) residuals_.emplace(control, system_, samples_, parameters_);
-        return {residuals_->squares(control),
-                inner_product(probes_, factor->solve(images_)) / static_cast<double>(probes_.dim()),
-                {}};
+        factor_.factor(*smoothed);
+        const Index dim = system_.dim();
+        const Index count = probes_.dim();
+        const PointSet solved = factor_.solve(
+            beside(system_.rhs(), parameters_.is_scattered() ? beside(images_, probes_) : images_));
+        const PointSet control = coordinates(solved, 0, dim);
+        const PointSet fitted = coordinates(solved, dim, count);
+        if (!reference_) reference_.emplace(control, system_, samples_, parameters_);
+        const PointSet pulls = reference_->pulls(control);
+        Quality result{reference_->squares(control, pulls),
+                       inner_product(probes_, fitted) / static_cast<double>(count),
+                       {}};
+        if (!parameters_.is_scattered()) return result;
+        // the roughness's part of the equations S = G + lambda R is what their solutions leave of G
+        result.squares_growth = 2 * inner_product(pulls, factor_.solve(pulls));
+        PointSet left = images_;
+        PointSet image(left.size(), count);
+        system_.apply(fitted, image);
+        add_scaled(left, -1.0, image);
+        result.trace_growth = -inner_product(coordinates(solved, dim + count, count), left) /
+                              static_cast<double>(count);
+        return result;
     }
 
   private:
@@ -112,7 +158,8 @@ class NetQuality : public SmoothingQuality {
     int order_;
     PointSet probes_;
     PointSet images_; // of the probes under the system
-    mutable std::optional<Residuals> residuals_;
+    mutable std::optional<Reference> reference_;
+    mutable NestedCholesky factor_;
 };
 
 } // namespace

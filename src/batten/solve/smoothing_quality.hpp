@@ -12,6 +12,8 @@ struct Quality {
     double squares;                    ///< of the weighted residuals, summed
     double trace;                      ///< of the matrix that makes fitted values of the samples
     std::vector<double> axis_traces{}; ///< whose product it is, where it is one
+    double squares_growth = 0;         ///< of a cloud: derivatives by the factor's logarithm
+    double trace_growth = 0;
 };
 
 /// Judges factors of the roughness, none of its numbers a difference of larger ones.

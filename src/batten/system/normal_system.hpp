@@ -49,6 +49,9 @@ class NormalSystem {
     /// near A^T D A, to precondition with; empty where none are known.
     virtual std::vector<BandedMatrix> nearby_factors() const { return {}; }
 
+    /// Whether the samples are a grid's, whose roughness is a product.
+    virtual bool of_grid() const { return false; }
+
     /// Adds lambda times the roughness to what is minimised, the mean of the weighted squares, so
     /// that A^T D A gets lambda W R for the total weight W. Of a sequence or cloud it is the
     /// integral of the squared derivatives of the given order along each axis. Of a grid it is the

@@ -194,16 +194,17 @@ void StencilSystem::add_product(double factor, const std::vector<BandedMatrix>& 
         for (Index i = 0; i < size(); ++i) {
             const GridIndex::Place at_control = controls_.place(i);
             double value = factor;
-            for (std::size_t k = axes_.size(); k-- > 0 && value != 0;) {
+            bool outside = false; // of the net, where there is no entry, whatever the factor
+            for (std::size_t k = axes_.size(); k-- > 0 && !outside;) {
                 const Index n = controls_.length(k);
                 const Index row = at_control[k];
                 const Index step = offsets_[static_cast<std::size_t>(place)][k];
                 Index from = step >= 0 ? row : row + step;
                 if (axes_[k].closed()) from = (from + n) % n;
-                const bool outside = !axes_[k].closed() && (from < 0 || row + step >= n);
-                value *= outside ? 0 : matrices[k].at(from, static_cast<int>(std::abs(step)));
+                outside = !axes_[k].closed() && (from < 0 || row + step >= n);
+                if (!outside) value *= matrices[k].at(from, static_cast<int>(std::abs(step)));
             }
-            at(place, i) += value;
+            if (!outside) at(place, i) += value;
         }
 }
 

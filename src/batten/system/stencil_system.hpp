@@ -27,6 +27,7 @@ class StencilSystem : public NormalSystem {
     /// Per axis the matrix of the samples' B-splines on that axis alone, all but the first over the
     /// total weight: their product comes near A^T D A when the samples are spread evenly.
     std::vector<BandedMatrix> nearby_factors() const override;
+    bool of_grid() const override { return !grid_means_.empty(); }
     void add_roughness(double lambda, int order) override;
 
   private:
