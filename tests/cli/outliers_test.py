@@ -56,10 +56,10 @@ def noise_for(rng, values, size):
     return least * 10 ** rng.uniform(0, 1) if least > 0.003 * size else 10 ** rng.uniform(np.log10(least), np.log10(0.01 * size))
 
 
-def curve(rng, dim, closed):
-    """A clean curve, its unit normals, and whether it is one of numbers over even parameters."""
+def curve(rng, dim, closed, denser=1):
+    """A clean curve and its unit normals."""
     bends = rng.uniform(2, 6)
-    m = int(bends * rng.uniform(20, 10 ** rng.uniform(1.4, 2.2)))
+    m = int(bends * denser * rng.uniform(20, 10 ** rng.uniform(1.4, 2.2)))
     if dim == 1:
         return waves(rng, bends)(np.arange(m) / (m - 1))[:, None], np.ones((m, 1))
     step = rng.uniform(0.6, 1.4, m)
@@ -96,6 +96,38 @@ def noisy_curve(seed, plant=True):
     mode = [["-n", 16], ["--tolerance", 5 * sigma], ["--smooth", "auto"]][seed % 3]
     mode += (["--closed"] if closed else []) + (["--parametrize", "uniform"] if dim == 1 else [])
     return points, sorted(np.concatenate(planted).astype(int).tolist()), sigma, mode
+
+
+def precise_curve(seed):
+    """As noisy_curve, with noise from a hundred-thousandth to a hundredth of a step."""
+    rng = np.random.default_rng(seed)
+    dim = int(rng.choice([1, 2, 2, 3]))
+    closed = dim > 1 and rng.random() < 0.3
+    points, normal = curve(rng, dim, closed, denser=5)
+    along = np.arange(float(len(points))) if dim == 1 else np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    at = [along[k:len(along) - 3 + k] for k in range(4)]
+    parabola = sum(np.prod([(at[0] - at[j]) / (at[k] - at[j]) for j in (1, 2, 3) if j != k], axis=0)[:, None] * points[k:len(points) - 3 + k] for k in (1, 2, 3))
+    step = along[-1] / (len(points) - 1) if dim > 1 else np.median(np.abs(np.diff(points, axis=0)))
+    least = max(1e-5 * step, np.linalg.norm(parabola - points[:-3], axis=1).max() / 4)
+    sigma = least * (max(1.01, 0.01 * step / least)) ** rng.random()
+    points = points + sigma * rng.normal(size=points.shape)
+    planted = groups(rng, len(points), closed)
+    for group in planted:
+        points[group] += (sigma * offsets(rng, len(group)))[:, None] * normal[group[len(group) // 2]]
+    mode = [["-n", 40], ["--tolerance", 5 * sigma], ["--smooth", "auto"]][seed % 3]
+    mode += (["--closed"] if closed else []) + (["--parametrize", "uniform"] if dim == 1 else [])
+    return points, sorted(np.concatenate(planted).astype(int).tolist()), sigma, mode
+
+
+def crowded_curve(seed):
+    """An eighth of the samples of a short curve, wherever they fall."""
+    rng = np.random.default_rng(seed)
+    points, normal = curve(rng, int(rng.choice([2, 3])), False)
+    sigma = noise_for(rng, points, np.linalg.norm(np.ptp(points, axis=0)))
+    points = points + sigma * rng.normal(size=points.shape)
+    planted = np.sort(rng.choice(len(points), len(points) // 8, replace=False))
+    points[planted] += sigma * (10 ** rng.uniform(np.log10(20), 3, len(planted)) * rng.choice([-1, 1], len(planted)))[:, None] * normal[planted]
+    return points, planted.tolist(), sigma, ["-n", 16]
 
 
 def noisy_heights(seed, plant=True):
@@ -194,8 +226,14 @@ class Outliers(InFolder):
     def test_of_curves(self):
         self.check(noisy_curve, 0.97)
 
+    def test_of_precise_curves(self):
+        self.check(precise_curve, 0.95)
+
+    def test_where_an_eighth_of_the_samples_are_outliers(self):
+        self.check(crowded_curve, 0.85)
+
     def test_of_heights_and_grids(self):
-        self.check(noisy_heights, 0.9)
+        self.check(noisy_heights, 0.95)
 
     def test_of_clouds(self):
         self.check(noisy_cloud, 0.95)

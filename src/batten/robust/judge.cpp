@@ -24,6 +24,9 @@ constexpr auto mirrored(auto stencils) {
 
 constexpr std::array behind = mirrored(before);
 
+/// Limits are alike up to this.
+constexpr double rounded = 1 - 1e-9;
+
 /// The value with that part of the others below it; orders them anew.
 double quantile(std::vector<double>& values, double part) {
     const auto at =
@@ -73,10 +76,12 @@ Judge::Verdict Judge::of(Index sample) const {
         for (std::span<const Stencil> stencils :
              {std::span<const Stencil>(to_both), std::span<const Stencil>(before),
               std::span<const Stencil>(behind)})
-            for (const Stencil& stencil : stencils)
-                if (const Verdict one = by_stencil(sample, axis, stencil, usual);
-                    one.limit < best.limit)
+            for (const Stencil& stencil : stencils) {
+                const Verdict one = by_stencil(sample, axis, stencil, usual);
+                if (one.limit < rounded * best.limit ||
+                    (one.limit * rounded <= best.limit && one.part < best.part))
                     best = one;
+            }
     }
     if (!std::isfinite(best.limit)) best.part = 0;
     return best;

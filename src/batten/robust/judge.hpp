@@ -36,7 +36,8 @@ class Judge {
     };
 
     /// By the stencil that is most certain, of those along each axis to both sides, before the
-    /// sample and behind it. Above 1 it is not explained; a sample without neighbours is.
+    /// sample and behind it; of equal ones by the one that explains it best. Above 1 it is not
+    /// explained; a sample without neighbours is.
     Verdict of(Index sample) const;
 
     /// Whether a sample that nothing explains may be a bend's own: along an axis its neighbours are

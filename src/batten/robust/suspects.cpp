@@ -39,6 +39,16 @@ Residuals residuals(const Trusted& trusted, std::size_t axis, const Stencils& st
     return result;
 }
 
+/// The largest usual residual if only the smallest quarter are: those of noise along a line, the
+/// least of all beside their largest.
+double largest_of_few(std::vector<double> normal) {
+    std::erase_if(normal, [](double x) { return !std::isfinite(x); });
+    if (normal.empty()) return std::numeric_limits<double>::infinity();
+    const auto quarter = normal.begin() + std::ssize(normal) / 4;
+    std::ranges::nth_element(normal, quarter);
+    return 16 * *quarter;
+}
+
 constexpr Index half_window = 32;
 
 /// Whether most values up to half a window from one, every second of them, are below a bound: then
@@ -111,6 +121,39 @@ void close_gaps(std::vector<char>& marked, const Trusted& trusted, std::size_t a
     }
 }
 
+/// Leaves out, round by round, the samples that are furthest off among those next to them, and
+/// marks them: where outliers are many every residual knows of one, but the largest are theirs.
+std::vector<char> farthest(Trusted trusted, std::size_t axis, const std::vector<double>& least) {
+    constexpr int most_rounds = 40;
+    std::vector<char> marked(static_cast<std::size_t>(trusted.size()), 0);
+    for (int round = 0; round < most_rounds; ++round) {
+        const Residuals here = residuals(trusted, axis, nearest);
+        const double large = 0.67 * largest_of_few(here.normal);
+        std::vector<Index> now;
+        for (Index i = 0; i < trusted.size(); ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            if (!std::isfinite(here.normal[k]) || here.normal[k] <= large ||
+                here.plain[k] <= least[k] / 3)
+                continue;
+            bool most = true;
+            for (Index side : {-1, 1}) {
+                std::array<Index, 2> found{};
+                const Index count = trusted.nearest(i, axis, side, found);
+                for (Index j = 0; j < count; ++j)
+                    most =
+                        most &&
+                        here.normal[static_cast<std::size_t>(found[static_cast<std::size_t>(j)])] <=
+                            here.normal[k];
+            }
+            if (most) now.push_back(i);
+        }
+        if (now.empty()) break;
+        trusted.leave_out(now);
+        for (Index i : now) marked[static_cast<std::size_t>(i)] = 1;
+    }
+    return marked;
+}
+
 /// Median distance of samples a few apart along an axis, per sample: noise adds little to it.
 double usual_step(const Trusted& trusted, std::size_t axis) {
     const Index apart = std::clamp<Index>(trusted.grid().length(axis) / 20, 1, 16);
@@ -120,6 +163,10 @@ double usual_step(const Trusted& trusted, std::size_t axis) {
             steps.push_back(distance(trusted.points()[i], trusted.points()[to]) /
                             static_cast<double>(apart));
     return median(std::move(steps));
+}
+
+bool most(const std::vector<char>& marked) {
+    return 2 * std::ranges::count(marked, 1) > std::ssize(marked);
 }
 
 } // namespace
@@ -153,6 +200,7 @@ Suspects suspects(const Trusted& trusted, const std::vector<double>& least) {
         }
         mark(marked, residuals(even, axis, next_nearest), trusted, axis, least);
         if (!result.noisy(axis)) mark(marked, std::move(here), trusted, axis, least);
+        if (most(marked)) marked = farthest(even, axis, least);
         close_gaps(marked, trusted, axis);
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = all[i] && marked[i];
     }
