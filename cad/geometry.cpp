@@ -1,6 +1,7 @@
 #include "geometry.hpp"
 
 #include <batten/core/core.hpp>
+#include <batten/io/format_limits.hpp>
 #include <batten/samples/samples.hpp>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
@@ -119,11 +120,7 @@ void check_surface(const Geom_BSplineSurface& surface, const Spline& spline) {
 } // namespace
 
 TopoDS_Shape shape_of(const Spline& spline) {
-    if (spline.axis_count() > 2 || spline.dim() < 2 || spline.dim() > 3)
-        throw InvalidInput(fmt::format(
-            "a CAD file holds curves and surfaces in space, this spline has {} {} in "
-            "dimension {}",
-            spline.axis_count(), spline.axis_count() == 1 ? "axis" : "axes", spline.dim()));
+    check(cad_limits, spline.axis_count(), spline.dim());
     const Spline open = clamped(spline);
     if (spline.axis_count() == 1) {
         const auto curve = curve_of(open);

@@ -94,7 +94,7 @@ void add_format(std::string extension, std::string description, Task write, Task
                      [read](const std::filesystem::path& path, const std::string& content) {
                          return parsed(read, path, content);
                      },
-                     true, SceneDetail::unit_and_date});
+                     true, cad_limits, SceneDetail::unit_and_date});
 }
 
 bool add_formats() {

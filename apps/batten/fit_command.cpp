@@ -47,6 +47,7 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     progress.say("reading " + flags.points);
     const Samples samples = samples_of(flags);
     FitOptions options = options_of(flags, fit_app, samples);
+    check_holds(flags, samples, options);
     if (!flags.report.empty() && flags.history) options.most_frames = 60;
     options.observer = [&](const Iteration& now) {
         progress.say(fmt::format("iteration {}, gradient {:.2e}", now.number, now.gradient_norm));

@@ -3,6 +3,7 @@
 #include <batten/io/output_file.hpp>
 #include <batten/io/output_place.hpp>
 #include <batten/io/spline_file.hpp>
+#include <batten/problem/problem.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -51,6 +52,13 @@ void check_files(const FitFlags& flags) {
     if (!flags.report.empty() && extension(flags.report) != ".html" && !is_stream(flags.report))
         throw InvalidInput(fmt::format("--report {}: a page .html is written", flags.report));
     check_outputs(outputs_of(flags), inputs_of(flags));
+}
+
+void check_holds(const FitFlags& flags, const Samples& samples, const FitOptions& options) {
+    const Index axes = axis_count(samples, options.shape);
+    for (const std::string& output : flags.outputs)
+        batten::check_holds(output, axes, samples.dim());
+    if (!flags.report.empty()) check(page_limits, axes, samples.dim());
 }
 
 bool writes_standard_output(const FitFlags& flags) {

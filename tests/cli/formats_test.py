@@ -43,6 +43,28 @@ class Formats(InFolder):
         t = [np.linspace(k[p], k[-p - 1], count) for k, p in zip(knots, degree)]
         return evaluate(knots, np.array(spline["control_points"]).reshape(*spline["control_shape"], -1), degree, t)
 
+    def test_what_a_format_cannot_hold_is_said_before_the_fit(self):
+        """In the words that a conversion has, though the fit would fail at once for another reason."""
+        extensions = [".json", ".svg", ".obj", ".g2", ".stl", ".vts", ".vtu", ".csv"] + ([".step", ".igs"] if HAS_CAD else [])
+        refused = 0
+        for axes in (1, 2, 3):
+            for dim in (1, 2, 3, 4, 5):
+                points = np.random.default_rng(10 * axes + dim).random((7,) * axes + (dim,))
+                np.save(self.folder / "q.npy", points.cumsum(axis=0))
+                fit = ["fit", "q.npy", "-n", "x".join("5" * axes), "--parametrize", "uniform", "-q"]
+                self.batten(*fit, "-o", "q.json")
+                for extension in extensions:
+                    converted = subprocess.run([BATTEN, "convert", "q.json", "-o", f"c{extension}"], cwd=self.folder, capture_output=True, text=True)
+                    before = subprocess.run([BATTEN, *fit, "--interpolate", "99999", "-o", f"f{extension}"], cwd=self.folder, capture_output=True, text=True)
+                    self.assertEqual(before.returncode, 2)
+                    if converted.returncode:
+                        refused += 1
+                        self.assertEqual((converted.returncode, before.stderr), (2, converted.stderr), (axes, dim, extension))
+                    else:
+                        self.assertIn("99999", before.stderr)
+                    self.assertFalse((self.folder / f"f{extension}").exists())
+        self.assertGreater(refused, 40)
+
     def test_wavefront_free_form(self):
         for name, spline in self.fits().items():
             if name == "block":

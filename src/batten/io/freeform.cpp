@@ -26,11 +26,7 @@ std::string numbers(std::span<const double> values) {
 
 std::string obj_spline(const Spline& stored, Index& vertices) {
     const Spline spline = drawn(stored);
-    if (spline.axis_count() > 2 || spline.dim() < 2 || spline.dim() > 3)
-        throw InvalidInput(
-            fmt::format("an .obj holds curves and surfaces in space, this spline has "
-                        "{} axes in dimension {}",
-                        spline.axis_count(), stored.dim()));
+    check(obj_limits, stored.axis_count(), stored.dim());
     const PointSet& control = spline.control_points();
     std::string text;
     for (Index i : first_axis_fastest(spline.control_shape()))

@@ -45,8 +45,6 @@ std::vector<double> picture_stretch(const Spline& graph) {
 }
 
 GraphScene::GraphScene(const Scene& function) : spline_(graph(function.spline)) {
-    if (spline_.dim() > 3)
-        throw InvalidInput("a picture shows functions of one and two variables, not of three");
     const std::vector<double> factors = picture_stretch(spline_);
     PointSet control = spline_.control_points();
     stretch_by(factors, control);

@@ -212,7 +212,8 @@ TEST_F(Files, a_picture_shows_exact_pieces) {
         << svg;
     const Spline line({KnotVector(1, {0, 0, 1, 1})}, PointSet(2, 4));
     EXPECT_EQ(message_of<InvalidInput>([&] { write_spline(path("q.svg"), {.spline = line}); }),
-              "an .svg picture shows the plane or space, this spline is of dimension 4");
+              "an .svg picture shows the plane, space and functions of one and two variables, this "
+              "spline has 1 axis in dimension 4");
     EXPECT_FALSE(std::filesystem::exists(path("q.svg")));
 }
 

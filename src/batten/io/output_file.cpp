@@ -70,4 +70,9 @@ std::string extension(const std::filesystem::path& path) {
     return result;
 }
 
+std::string extension_or(const std::filesystem::path& path, std::string_view otherwise) {
+    std::string wanted = extension(path);
+    return wanted.empty() && is_stream(path) ? std::string(otherwise) : wanted;
+}
+
 } // namespace batten

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <batten/io/format_limits.hpp>
 #include <batten/parametrize/parametrize.hpp>
 #include <batten/samples/samples.hpp>
 #include <batten/spline/spline.hpp>
@@ -62,6 +63,7 @@ struct SplineFormat {
     std::function<SplineFile(const std::filesystem::path&, const std::string&)> read;
     /// Whether a file may hold several splines.
     bool several = false;
+    FormatLimits limits{};
     SceneDetail shows = SceneDetail::none;
     /// One sentence on what the file loses of the scene, empty where nothing is to be said.
     std::function<std::string(const Scene&)> note{};
@@ -80,6 +82,10 @@ void register_format(SplineFormat format);
 /// Throws InvalidInput when no spline format has the extension, FileError when the file cannot be
 /// written there: to be asked before the work, so that a fit is not lost to a slip of the pen.
 void check_output(const std::filesystem::path& path);
+
+/// Throws InvalidInput when the file's format holds no spline of so many axes and dimension: also
+/// to be asked before the work.
+void check_holds(const std::filesystem::path& path, Index axes, Index dim);
 
 /// Reads all splines of a file, by extension; throws FileError with path and place.
 SplineFile read_splines(const std::filesystem::path& path);

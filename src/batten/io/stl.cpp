@@ -18,11 +18,7 @@ namespace {
 constexpr double epsilon = std::numeric_limits<float>::epsilon() / 2; // relative rounding
 
 void check_surface(const Spline& spline) {
-    const bool height = is_function(spline) && spline.axis_count() == 2;
-    if (!height && (spline.axis_count() == 1 || spline.dim() != 3))
-        throw InvalidInput(fmt::format(
-            "an .stl holds surfaces in space, this spline has {} {} in dimension {}",
-            spline.axis_count(), spline.axis_count() == 1 ? "axis" : "axes", spline.dim()));
+    check(stl_limits, spline.axis_count(), spline.dim());
     const Spline shown = drawn(spline);
     for (double x : shown.control_points().values())
         if (std::abs(x) > std::numeric_limits<float>::max())

@@ -168,11 +168,8 @@ PointSet box_around(const Scene& scene, const std::vector<Tooth>& comb) {
 
 std::string svg_picture(const Scene& scene) {
     const Spline& curve = scene.spline;
+    check(svg_limits, curve.axis_count(), curve.dim());
     if (is_function(curve)) return svg_picture(GraphScene(scene).scene());
-    if (curve.dim() > 3)
-        throw InvalidInput(
-            fmt::format("an .svg picture shows the plane or space, this spline is of dimension {}",
-                        curve.dim()));
     if (curve.axis_count() != 1 || curve.dim() != 2) return svg_projection(scene);
     const std::vector<Tooth> comb = scene.curvature_comb
                                         ? comb_of(curve, diagonal(curve.control_points()))

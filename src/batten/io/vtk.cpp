@@ -12,12 +12,6 @@ namespace batten {
 
 namespace {
 
-void check_space(const Spline& spline, std::string_view format) {
-    if (spline.dim() > 3)
-        throw InvalidInput(fmt::format("{} holds points in space, this spline is of dimension {}",
-                                       format, spline.dim()));
-}
-
 void add_points(std::string& text, const PointSet& points) {
     append_text(text, points.size(), [&](Index i, fmt::memory_buffer& out) {
         const auto p = points[i];
@@ -144,7 +138,7 @@ void add_values(std::string& text, const PointSet& points) {
 } // namespace
 
 std::string vts_text(const Scene& scene) {
-    check_space(scene.spline, "a .vts");
+    check(vts_limits, scene.spline.axis_count(), scene.spline.dim());
     const SampledNets s =
         sampled(scene.spline, sampling(scene.spline, chord_of(scene, scene.spline)));
     const GridIndex& grid = s.nets.front().grid;
@@ -170,7 +164,7 @@ std::string vts_text(const Scene& scene) {
 }
 
 std::string vtu_text(const Scene& scene) {
-    check_space(scene.spline, "a .vtu");
+    check(vtu_limits, scene.spline.axis_count(), scene.spline.dim());
     const auto s = sampled(scene.spline, sampling(scene.spline, chord_of(scene, scene.spline)));
     const auto [vertices, vertex] = s.distinct();
     PointSet points = drawn_samples(scene);

@@ -177,6 +177,11 @@ void Problem::stop_if_cancelled() const {
     if (options.cancelled && options.cancelled()) throw Cancelled("the fit was cancelled");
 }
 
+Index axis_count(const Samples& samples, const ShapeOptions& shape) {
+    if (kind_of(samples, shape) != SampleKind::cloud) return samples.axis_count();
+    return shape.parameters ? shape.parameters->axis_count() : 2;
+}
+
 Problem problem_of(const Samples& samples, const FitOptions& options) {
     check(samples);
     check_numbers(options);
@@ -191,9 +196,7 @@ Problem problem_of(const Samples& samples, const FitOptions& options) {
         shape.parameters = seen(samples, shape);
         shape.projection.reset();
     }
-    const Index axes =
-        problem.kind == SampleKind::cloud ? shape.parameters->axis_count() : samples.axis_count();
-    problem.axes = plan_axes(shape, axes);
+    problem.axes = plan_axes(shape, axis_count(samples, shape));
     check_counts(problem);
     check_net(problem);
     check_seam(options, problem.axes);

@@ -37,6 +37,10 @@ struct Problem {
     void stop_if_cancelled() const;
 };
 
+/// Axes of the spline that the options make of the samples; throws InvalidInput where they
+/// contradict each other.
+Index axis_count(const Samples& samples, const ShapeOptions& shape);
+
 /// The problem that samples and options state. What the options leave open is chosen: parameters
 /// (a cloud's by projection), with no size and no tolerance stated a tolerance of a thousandth of
 /// the samples' diagonal, with smoothing a size. Throws InvalidInput naming what breaks a rule.

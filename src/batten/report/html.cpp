@@ -176,11 +176,7 @@ std::string html_page(const FitReport& report, const Scene& scene, const PageOpt
         throw InvalidInput("a report page needs the samples and their deviations");
     const bool function = is_function(scene.spline);
     const Spline shown = drawn(scene.spline);
-    if (shown.dim() > 3)
-        throw InvalidInput(
-            fmt::format("a report page shows curves, surfaces and volumes in space and functions "
-                        "of one and two variables, this spline has {} axes in dimension {}",
-                        scene.spline.axis_count(), scene.spline.dim()));
+    check(page_limits, scene.spline.axis_count(), scene.spline.dim());
     const PointSet samples = drawn_samples(scene);
     if (samples.empty())
         throw InvalidInput("a report page of a function needs its samples' parameters");
