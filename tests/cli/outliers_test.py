@@ -230,7 +230,7 @@ class Outliers(InFolder):
         self.check(precise_curve, 0.95)
 
     def test_where_an_eighth_of_the_samples_are_outliers(self):
-        self.check(crowded_curve, 0.85)
+        self.check(crowded_curve, 0.92)
 
     def test_of_heights_and_grids(self):
         self.check(noisy_heights, 0.95)
@@ -246,6 +246,30 @@ class Outliers(InFolder):
                 found, samples = self.set_aside(points, *arguments)
                 lost, total = lost + len(found), total + samples
             self.assertLessEqual(lost, 1e-3 * total, generated.__name__)
+
+    def test_a_hump_on_a_plain_is_the_shapes_own(self):
+        """Most samples are exactly level there, so nobody else is usual."""
+        lost = total = 0
+        for seed, count, width in [(s, m, w) for s in (1, 11) for m in (300, 1000, 3000) for w in (0.002, 0.005, 0.01)]:
+            place = np.random.default_rng(seed).random((count, 2))
+            hump = np.exp(-((place - 0.5) ** 2).sum(axis=1) / width)
+            found, samples = self.set_aside(np.column_stack([place, hump]), "-n", "12x12", "--project", "xy")
+            lost, total = lost + len(found), total + samples
+        self.assertLessEqual(lost, 1e-3 * total)
+
+    def test_in_few_samples(self):
+        for seed in some(range(60)):
+            rng = np.random.default_rng(seed)
+            m = int(rng.integers(16, 40))
+            t = np.linspace(0, 1, m)
+            points = np.column_stack([4 * t, np.sin(3 * t), t * t]) + 0.012 * rng.normal(size=(m, 3))
+            planted = []
+            for i in rng.permutation(m):
+                if len(planted) < m // 8 and all(abs(i - j) >= 4 for j in planted):
+                    planted.append(int(i))
+            for i in planted:
+                points[i, 2] += 0.012 * 10 ** rng.uniform(2, 3) * rng.choice([-1, 1])
+            self.assertEqual(self.set_aside(points, "-n", 7)[0], sorted(planted), (seed, m))
 
     def test_real_sections_lose_nothing(self):
         """Corners, sharp noses, cusps and jumps in spacing are the shape's own."""

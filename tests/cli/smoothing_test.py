@@ -256,6 +256,15 @@ class Smoothing(InFolder):
                         largest = 0.9 * float(done.stderr.split()[-1])
                         self.assertEqual(smooth(largest).returncode, 0, smooth(largest).stderr)
 
+    def test_places_on_a_line_determine_no_surface(self):
+        t = np.random.default_rng(1).random(230)
+        np.savetxt(self.folder / "line.csv", np.column_stack([t, t]), delimiter=",", fmt="%.17g")
+        np.savetxt(self.folder / "height.csv", np.sin(5 * t) + t * t, fmt="%.17g")
+        for factor in ("auto", 0.5):
+            done = subprocess.run([BATTEN, "fit", "height.csv", "--parameters", "line.csv", "-n", "14x11", "--smooth", str(factor), "--smooth-order", "3"],
+                                  cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+
     def test_no_unit_counts(self):
         rng = np.random.default_rng(5)
         t = np.sort(rng.random(300))

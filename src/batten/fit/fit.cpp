@@ -32,7 +32,10 @@ Fitted answered(const Problem& problem, const Choice& choice) {
         const bool smooth = problem.options.smooth.wanted;
         const bool others = !choice.reason.empty() && choice.driver->name == "direct" &&
                             other.takes(problem.kind)->covers(requests_of(problem));
-        if (others && smooth && problem.kind == SampleKind::cloud) return by(other, error.what());
+        if (others && smooth && problem.kind == SampleKind::cloud)
+            if (Fitted fitted = by(other, error.what());
+                fitted.report.termination == Termination::converged)
+                return fitted; // else nothing is determined but for rounding
         if (problem.options.smooth.lambda > 0)
             throw InvalidInput(fmt::format("smoothing by {}: {}; another factor may do",
                                            problem.options.smooth.lambda, error.what()));

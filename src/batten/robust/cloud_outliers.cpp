@@ -161,6 +161,31 @@ void take_back(TrustedCloud& cloud, const CloudJudge& judge, std::vector<Index>&
     }
 }
 
+/// Those that have no more than three others among their eight nearest, nor one that has more
+/// beside it: many together are a part of the shape.
+std::vector<Index> alone(TrustedCloud& cloud, const std::vector<Index>& left) {
+    constexpr Index beside = 8;
+    constexpr Index many = 4;
+    std::vector<char> out(static_cast<std::size_t>(cloud.size()), 0);
+    for (Index i : left) out[static_cast<std::size_t>(i)] = 1;
+    for (Index i : left) cloud.trust(i, true);
+    std::vector<std::vector<Index>> around;
+    for (Index i : left) around.push_back(cloud.nearest(i, beside));
+    for (Index i : left) cloud.trust(i, false);
+    std::vector<char> crowded(out.size(), 0);
+    for (std::size_t k = 0; k < left.size(); ++k)
+        crowded[static_cast<std::size_t>(left[k])] =
+            std::ranges::count_if(
+                around[k], [&](Index i) { return out[static_cast<std::size_t>(i)] != 0; }) >= many;
+    std::vector<Index> result;
+    for (std::size_t k = 0; k < left.size(); ++k)
+        if (!crowded[static_cast<std::size_t>(left[k])] &&
+            std::ranges::none_of(
+                around[k], [&](Index i) { return crowded[static_cast<std::size_t>(i)] != 0; }))
+            result.push_back(left[k]);
+    return result;
+}
+
 } // namespace
 
 std::vector<Index> cloud_outliers(const Points& points, const Points& places,
@@ -177,7 +202,7 @@ std::vector<Index> cloud_outliers(const Points& points, const Points& places,
     const CloudJudge judge{cloud, least, UsualResidual(normal).largest};
     take_back(cloud, judge, left);
     std::erase_if(left, [&](Index i) { return judge.unresolved(i); });
-    return left;
+    return alone(cloud, left);
 }
 
 } // namespace batten

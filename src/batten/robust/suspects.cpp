@@ -200,8 +200,11 @@ Suspects suspects(const Trusted& trusted, const std::vector<double>& least) {
         }
         mark(marked, residuals(even, axis, next_nearest), trusted, axis, least);
         if (!result.noisy(axis)) mark(marked, std::move(here), trusted, axis, least);
-        if (most(marked)) marked = farthest(even, axis, least);
         close_gaps(marked, trusted, axis);
+        if (most(marked)) {
+            marked = farthest(even, axis, least);
+            close_gaps(marked, trusted, axis);
+        }
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = all[i] && marked[i];
     }
     for (std::size_t i = 0; i < all.size(); ++i)
