@@ -261,8 +261,7 @@ class Smoothing(InFolder):
         np.savetxt(self.folder / "line.csv", np.column_stack([t, t]), delimiter=",", fmt="%.17g")
         np.savetxt(self.folder / "height.csv", np.sin(5 * t) + t * t, fmt="%.17g")
         for factor in ("auto", 0.5):
-            done = subprocess.run([BATTEN, "fit", "height.csv", "--parameters", "line.csv", "-n", "14x11", "--smooth", str(factor), "--smooth-order", "3"],
-                                  cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
+            done = self.run_batten("fit", "height.csv", "--parameters", "line.csv", "-n", "14x11", "--smooth", str(factor), "--smooth-order", "3")
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
 
     def test_no_unit_counts(self):
