@@ -86,7 +86,7 @@ FitResult fit(const Samples& samples, const FitOptions& options) {
     check_settings(method_entry(options.method.name), options.method.settings);
     if (const double unit = usual_unit(samples.points); unit != 1)
         return rescaled(fit(rescaled(samples, unit), rescaled(options, unit)), 1 / unit);
-    if (const double unit = usual_weight(samples.weights, options.method.name); unit != 1) {
+    if (const double unit = usual_weight(samples.weights, options); unit != 1) {
         check(samples); // names what the caller stated
         return reweighted(fit(reweighted(samples, unit), reweighted(options, unit)), unit);
     }

@@ -18,14 +18,15 @@ void divide_steps(Settings& settings, std::string_view method, double unit) {
 
 } // namespace
 
-double usual_weight(const std::vector<double>& weights, std::string_view method) {
+double usual_weight(const std::vector<double>& weights, const FitOptions& options) {
     constexpr int most = 1022; // the power's inverse is a number, too
     if (weights.empty()) return 1;
     const auto [least, largest] = std::ranges::minmax(weights);
     if (!(least > 0) || !std::isfinite(largest)) return 1;
     if (least == largest) return largest;
     const int exponent = std::ilogb(largest);
-    if (method == "clspia" && std::abs(exponent) <= 200) return 1;
+    const bool multipliers = options.method.name == "clspia" && options.hold.equalities();
+    if (multipliers && std::abs(exponent) <= 200) return 1;
     return std::ldexp(1.0, std::clamp(exponent, -most, most));
 }
 
