@@ -54,8 +54,8 @@ class Formats(InFolder):
                 fit = ["fit", "q.npy", "-n", "x".join("5" * axes), "--parametrize", "uniform", "-q"]
                 self.batten(*fit, "-o", "q.json")
                 for extension in extensions:
-                    converted = subprocess.run([BATTEN, "convert", "q.json", "-o", f"c{extension}"], cwd=self.folder, capture_output=True, text=True)
-                    before = subprocess.run([BATTEN, *fit, "--interpolate", "99999", "-o", f"f{extension}"], cwd=self.folder, capture_output=True, text=True)
+                    converted = self.run_batten("convert", "q.json", "-o", f"c{extension}")
+                    before = self.run_batten(*fit, "--interpolate", "99999", "-o", f"f{extension}")
                     self.assertEqual(before.returncode, 2)
                     if converted.returncode:
                         refused += 1

@@ -80,22 +80,26 @@ def curve(rng, dim, closed, denser=1):
     return point, normal / np.linalg.norm(normal, axis=1, keepdims=True)
 
 
+def with_outliers(rng, seed, points, normal, sigma, closed, count, plant=True):
+    """A clean curve with noise and outliers: points, the outliers among them, the noise, and how to fit."""
+    points = points + sigma * rng.normal(size=points.shape)
+    planted = groups(rng, len(points), closed) if plant else []
+    for group in planted:
+        points[group] += (sigma * offsets(rng, len(group)))[:, None] * normal[group[len(group) // 2]]
+    mode = [["-n", count], ["--tolerance", 5 * sigma], ["--smooth", "auto"]][seed % 3]
+    mode += (["--closed"] if closed else []) + (["--parametrize", "uniform"] if points.shape[1] == 1 else [])
+    return points, sorted(int(i) for group in planted for i in group), sigma, mode
+
+
 def noisy_curve(seed, plant=True):
-    """Points, the outliers among them, the noise, and how to fit."""
+    """Noise of about a thousandth of the size, at least what can be told from the shape."""
     rng = np.random.default_rng(seed)
     dim, closed = int(rng.choice([1, 2, 2, 3])), rng.random() < 0.3
     closed = closed and dim > 1
     points, normal = curve(rng, dim, closed)
     size = np.linalg.norm(np.ptp(points, axis=0))
     sigma = noise_for(rng, points, size)
-    points = points + sigma * rng.normal(size=points.shape)
-    planted = groups(rng, len(points), closed) if plant else [[]]
-    for group in planted:
-        if len(group):
-            points[group] += (sigma * offsets(rng, len(group)))[:, None] * normal[group[len(group) // 2]]
-    mode = [["-n", 16], ["--tolerance", 5 * sigma], ["--smooth", "auto"]][seed % 3]
-    mode += (["--closed"] if closed else []) + (["--parametrize", "uniform"] if dim == 1 else [])
-    return points, sorted(np.concatenate(planted).astype(int).tolist()), sigma, mode
+    return with_outliers(rng, seed, points, normal, sigma, closed, 16, plant)
 
 
 def precise_curve(seed):
@@ -110,13 +114,7 @@ def precise_curve(seed):
     step = along[-1] / (len(points) - 1) if dim > 1 else np.median(np.abs(np.diff(points, axis=0)))
     least = max(1e-5 * step, np.linalg.norm(parabola - points[:-3], axis=1).max() / 4)
     sigma = least * (max(1.01, 0.01 * step / least)) ** rng.random()
-    points = points + sigma * rng.normal(size=points.shape)
-    planted = groups(rng, len(points), closed)
-    for group in planted:
-        points[group] += (sigma * offsets(rng, len(group)))[:, None] * normal[group[len(group) // 2]]
-    mode = [["-n", 40], ["--tolerance", 5 * sigma], ["--smooth", "auto"]][seed % 3]
-    mode += (["--closed"] if closed else []) + (["--parametrize", "uniform"] if dim == 1 else [])
-    return points, sorted(np.concatenate(planted).astype(int).tolist()), sigma, mode
+    return with_outliers(rng, seed, points, normal, sigma, closed, 40)
 
 
 def crowded_curve(seed):

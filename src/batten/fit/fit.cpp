@@ -92,7 +92,8 @@ FitResult fit(const Samples& samples, const FitOptions& options) {
     }
     Stopwatch watch;
     Problem problem = problem_of(samples, options);
-    if (std::ranges::all_of(samples.weights, [](double w) { return w == 1; })) {
+    if (!samples.weights.empty() &&
+        std::ranges::all_of(samples.weights, [](double w) { return w == 1; })) {
         choose(problem); // refuses what cannot weigh samples
         problem.samples.weights.clear();
     }

@@ -34,17 +34,16 @@ inline constexpr FormatLimits stl_limits{.holds = "an .stl holds surfaces in spa
                                          .most_variables = 2};
 inline constexpr FormatLimits vts_limits{.holds = "a .vts holds points in space", .most_dim = 3};
 inline constexpr FormatLimits vtu_limits{.holds = "a .vtu holds points in space", .most_dim = 3};
-inline constexpr FormatLimits svg_limits{
-    .holds = "an .svg picture shows the plane, space and functions of one and two variables",
-    .least_dim = 2,
-    .most_dim = 3,
-    .most_variables = 2};
-inline constexpr FormatLimits page_limits{
-    .holds = "a report page shows curves, surfaces and volumes in space and functions of one and "
-             "two variables",
-    .least_dim = 2,
-    .most_dim = 3,
-    .most_variables = 2};
+/// Of what shows splines and graphs in the plane and in space.
+constexpr FormatLimits shown(std::string_view holds) {
+    return {.holds = holds, .least_dim = 2, .most_dim = 3, .most_variables = 2};
+}
+
+inline constexpr FormatLimits svg_limits =
+    shown("an .svg picture shows the plane, space and functions of one and two variables");
+inline constexpr FormatLimits page_limits =
+    shown("a report page shows curves, surfaces and volumes in space and functions of one and two "
+          "variables");
 inline constexpr FormatLimits cad_limits{.holds = "a CAD file holds curves and surfaces in space",
                                          .most_axes = 2,
                                          .least_dim = 2,

@@ -102,25 +102,12 @@ struct CloudJudge {
         return best;
     }
 
-    /// What smooth samples beside it are off if the surroundings reached as far: four times what
-    /// most are beyond noise, or twice what all are on the average.
     double smooth_residual(const std::vector<Index>& beside, const Surroundings& by,
                            double reach) const {
-        constexpr double tenth = 0.45; // of the largest: a tenth of normal residuals are above it
-        const auto dim = static_cast<std::size_t>(cloud.points().dim());
-        std::vector<double> values;
-        std::vector<double> off(dim);
-        std::vector<double> sum(dim, 0);
-        for (Index i : beside) {
-            const Prediction there = cloud.predict(i, by, off);
-            if (!there.exists()) continue;
-            const double far = there.reach > 0 ? std::max(1.0, reach / there.reach) : 1;
-            values.push_back(far * std::max(0.0, there.residual - tenth * largest * there.gain));
-            add_scaled(sum.data(), far, off.data(), static_cast<Index>(dim));
-        }
-        if (values.empty()) return std::numeric_limits<double>::infinity(); // nobody knows
-        const double mean = norm(sum) / static_cast<double>(values.size());
-        return std::max(4 * median(std::move(values)), 2 * mean);
+        std::vector<double> off(static_cast<std::size_t>(cloud.points().dim()));
+        SmoothResidual result(largest, reach, off.size());
+        for (Index i : beside) result.add(cloud.predict(i, by, off), off);
+        return result.value();
     }
 
     /// Whether neighbours are about as badly predicted without it: of many, for where places are

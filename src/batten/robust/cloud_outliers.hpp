@@ -12,8 +12,8 @@ namespace batten {
 /// polynomial is off beside it, and than `least` (one per sample, infinite for one that stays).
 ///
 /// The farthest are left out first and the others judged anew without them; at last what the rest
-/// explains comes back, and what its neighbours are as badly predicted without stays, and
-/// so do many together.
+/// explains comes back, and what its neighbours are as badly predicted without stays, and so
+/// do many together.
 std::vector<Index> cloud_outliers(const Points& points, const Points& places,
                                   const std::vector<double>& least);
 

@@ -24,6 +24,14 @@ constexpr auto mirrored(auto stencils) {
 
 constexpr std::array behind = mirrored(before);
 
+constexpr auto to_any_side = [] {
+    std::array<Stencil, to_both.size() + before.size() + behind.size()> all{};
+    auto next = std::ranges::copy(to_both, all.begin()).out;
+    next = std::ranges::copy(before, next).out;
+    std::ranges::copy(behind, next);
+    return all;
+}();
+
 /// Limits are alike up to this.
 constexpr double rounded = 1 - 1e-9;
 
@@ -60,6 +68,24 @@ UsualResidual::UsualResidual(std::vector<double> residuals) {
     largest = std::clamp(largest, 3.9 * median, 7.5 * median);
 }
 
+void SmoothResidual::add(const Prediction& there, std::span<const double> off) {
+    constexpr double tenth = 0.45; // of the largest one: a tenth of normal residuals are above it
+    if (!there.exists()) return;
+    const double far = there.reach > 0 ? std::max(1.0, reach_ / there.reach) : 1;
+    beyond_noise_.push_back(far * std::max(0.0, there.residual - tenth * largest_ * there.gain));
+    add_scaled(sum_.data(), far, off.data(), std::ssize(off));
+    if (beyond_noise_.size() == first_) mean_of_first_ = mean();
+}
+
+double SmoothResidual::mean() const {
+    return norm(sum_) / static_cast<double>(beyond_noise_.size());
+}
+
+double SmoothResidual::value() const {
+    if (beyond_noise_.empty()) return std::numeric_limits<double>::infinity(); // nobody knows
+    return std::max(4 * median(beyond_noise_), 2 * std::max(mean_of_first_, mean()));
+}
+
 double Judge::usual_around(Index sample, std::size_t axis) const {
     std::vector<double> values;
     for (Index beside : around(trusted_, sample, axis, 16))
@@ -73,15 +99,12 @@ Judge::Verdict Judge::of(Index sample) const {
     Verdict best;
     for (std::size_t axis = 0; axis < trusted_.axis_count(); ++axis) {
         const double usual = usual_around(sample, axis);
-        for (std::span<const Stencil> stencils :
-             {std::span<const Stencil>(to_both), std::span<const Stencil>(before),
-              std::span<const Stencil>(behind)})
-            for (const Stencil& stencil : stencils) {
-                const Verdict one = by_stencil(sample, axis, stencil, usual);
-                if (one.limit < rounded * best.limit ||
-                    (one.limit * rounded <= best.limit && one.part < best.part))
-                    best = one;
-            }
+        for (const Stencil& stencil : to_any_side) {
+            const Verdict one = by_stencil(sample, axis, stencil, usual);
+            if (one.limit < rounded * best.limit ||
+                (one.limit * rounded <= best.limit && one.part < best.part))
+                best = one;
+        }
     }
     if (!std::isfinite(best.limit)) best.part = 0;
     return best;
@@ -99,31 +122,16 @@ Judge::Verdict Judge::by_stencil(Index sample, std::size_t axis, const Stencil& 
     return result;
 }
 
-/// What smooth samples beside it are off if the stencil reached as far: four times what most of
-/// them are beyond noise, or twice what all, or the nearest, are on the average, for noise has
-/// none.
 double Judge::smooth_residual(Index sample, std::size_t axis, const Stencil& stencil,
                               double reach) const {
-    constexpr double tenth = 0.45; // of the largest one: a tenth of normal residuals are above it
-    const auto dim = static_cast<std::size_t>(trusted_.points().dim());
-    std::vector<double> values;
-    std::vector<double> off(dim);
-    std::vector<double> sum(dim, 0);
-    double mean = 0;
+    std::vector<double> off(static_cast<std::size_t>(trusted_.points().dim()));
+    constexpr std::size_t first = 3; // before, or the nearest of one side
+    SmoothResidual result(usual_[axis].largest, reach, off.size(), first);
     const Index side = stencil.one_sided() ? 6 : 3;
     for (Index beside :
-         around(trusted_, sample, axis, side, stencil.before > 0, stencil.behind > 0)) {
-        const Prediction there = trusted_.predict(beside, axis, stencil, off);
-        if (!there.exists()) continue;
-        const double far = there.reach > 0 ? std::max(1.0, reach / there.reach) : 1;
-        values.push_back(far *
-                         std::max(0.0, there.residual - tenth * usual_[axis].largest * there.gain));
-        add_scaled(sum.data(), far, off.data(), static_cast<Index>(dim));
-        if (values.size() == 3) mean = norm(sum) / 3; // before, or the nearest of one side
-    }
-    if (values.empty()) return std::numeric_limits<double>::infinity(); // nobody knows
-    mean = std::max(mean, norm(sum) / static_cast<double>(values.size()));
-    return std::max(4 * median(std::move(values)), 2 * mean);
+         around(trusted_, sample, axis, side, stencil.before > 0, stencil.behind > 0))
+        result.add(trusted_.predict(beside, axis, stencil, off), off);
+    return result.value();
 }
 
 bool Judge::unresolved(Index sample, std::size_t axis, Index run) const {

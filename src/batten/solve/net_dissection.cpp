@@ -7,6 +7,7 @@ namespace batten {
 namespace {
 
 constexpr Index small_part = 100; // control points that are not worth parting
+constexpr Index small_runs = 16;  // at least so many, each by one thread
 
 /// Control points [begin, end) along each axis.
 struct Box {
@@ -24,8 +25,6 @@ struct Box {
         return true;
     }
 };
-
-constexpr Index small_runs = 16; // at least so many, each by one thread
 
 class Dissector {
   public:
