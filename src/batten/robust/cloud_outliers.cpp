@@ -1,175 +1,215 @@
 #include <batten/robust/cloud_outliers.hpp>
 
-#include <batten/core/vectors.hpp>
 #include <batten/robust/judge.hpp>
 #include <batten/robust/scattered_neighbours.hpp>
 #include <batten/samples/noise.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace batten {
 
 namespace {
 
-constexpr Surroundings closest_around{2, 3};
-constexpr std::array surroundings{closest_around, Surroundings{1, 3}, Surroundings{1, 8},
-                                  Surroundings{2, 6}, Surroundings{3, 3}};
-constexpr Index near = 80; ///< neighbours that a residual is compared with: most know nothing of it
+using Neighbours = TrustedCloud::Neighbours;
 
-/// What the nearest neighbours of each trusted sample have it off; those of `places` anew.
-void update(const TrustedCloud& cloud, const std::vector<Index>& places,
-            std::vector<double>& normal) {
-    for_each_block(static_cast<Index>(places.size()), 64, [&](const Block& block) {
-        for (Index k = block.begin; k < block.end; ++k) {
-            const Index i = places[static_cast<std::size_t>(k)];
-            normal[static_cast<std::size_t>(i)] = cloud.predict(i, closest_around).normal();
+/// Samples that are far off among their neighbours.
+class Suspected {
+  public:
+    Suspected(TrustedCloud& cloud, const std::vector<double>& least)
+        : cloud_(cloud), least_(least), normal_(static_cast<std::size_t>(cloud.size())) {}
+
+    /// Leaves them out round by round: what hides behind others is seen without them.
+    std::vector<Index> leave_out() {
+        constexpr int most_rounds = 12;
+        std::vector<Index> changed(normal_.size());
+        std::iota(changed.begin(), changed.end(), Index{0});
+        std::vector<Index> left;
+        for (int round = 0; round < most_rounds && !changed.empty(); ++round) {
+            const std::vector<Index> now = far_off(changed);
+            left.insert(left.end(), now.begin(), now.end());
+            changed = around(now);
         }
-    });
-}
+        take_back(left);
+        return left;
+    }
 
-std::vector<double> of(const std::vector<double>& values, const std::vector<Index>& samples) {
-    std::vector<double> result;
-    for (Index i : samples)
-        if (const double x = values[static_cast<std::size_t>(i)]; std::isfinite(x))
-            result.push_back(x);
-    return result;
-}
-
-/// Leaves out what is far off among its neighbours, round by round: what hides behind others is
-/// seen without them.
-std::vector<Index> leave_out(TrustedCloud& cloud, const std::vector<double>& least) {
-    constexpr int most_rounds = 12;
-    const Index m = cloud.size();
-    std::vector<Index> changed(static_cast<std::size_t>(m));
-    for (Index i = 0; i < m; ++i) changed[static_cast<std::size_t>(i)] = i;
-    std::vector<double> normal(static_cast<std::size_t>(m));
-    std::vector<Index> left;
-    double part = 0;
-    for (int round = 0; round < most_rounds && !changed.empty(); ++round) {
-        update(cloud, changed, normal);
-        const UsualResidual usual(normal);
-        part = 0.67 * usual.ratio();
-        std::vector<char> out(changed.size(), 0);
-        for_each_block(static_cast<Index>(changed.size()), 64, [&](const Block& block) {
+  private:
+    /// Of these samples, whose neighbours are others than before; they are not trusted any more.
+    std::vector<Index> far_off(const std::vector<Index>& changed) {
+        for_each_block(std::ssize(changed), 1024, [&](const Block& block) {
+            Neighbours near;
             for (Index k = block.begin; k < block.end; ++k) {
                 const Index i = changed[static_cast<std::size_t>(k)];
-                const double here = normal[static_cast<std::size_t>(i)];
-                if (!cloud.trusts(i) || !std::isfinite(here) ||
-                    here <= least[static_cast<std::size_t>(i)] / 3 || here <= 0.67 * usual.largest)
-                    continue;
-                out[static_cast<std::size_t>(k)] =
-                    here > part * median(of(normal, cloud.nearest(i, near)));
+                normal_[static_cast<std::size_t>(i)] = cloud_.predict(i, near).normal();
             }
         });
-        std::vector<Index> now;
+        const UsualResidual usual(normal_);
+        std::vector<char> out(changed.size(), 0);
+        for_each_block(std::ssize(changed), 1024, [&](const Block& block) {
+            Neighbours near;
+            for (Index k = block.begin; k < block.end; ++k)
+                out[static_cast<std::size_t>(k)] =
+                    is_far_off(changed[static_cast<std::size_t>(k)], usual, near) ? 1 : 0;
+        });
+        std::vector<Index> result;
         for (std::size_t k = 0; k < changed.size(); ++k)
-            if (out[k]) now.push_back(changed[k]);
-        changed.clear();
-        for (Index i : now) cloud.trust(i, false);
-        left.insert(left.end(), now.begin(), now.end());
-        for (Index i : now)
-            for (Index beside : cloud.nearest(i, 48)) changed.push_back(beside);
-        std::ranges::sort(changed);
-        changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-        for (Index i : now)
-            normal[static_cast<std::size_t>(i)] = std::numeric_limits<double>::infinity();
-    }
-    std::ranges::sort(left);
-    return left;
-}
-
-/// Says whether the most certain surroundings explain a sample.
-struct CloudJudge {
-    const TrustedCloud& cloud;
-    const std::vector<double>& least;
-    double largest; ///< usual residual in units of a sample's noise
-
-    Judge::Verdict of(Index sample) const {
-        const std::vector<Index> beside = cloud.nearest(sample, 6);
-        Judge::Verdict best;
-        for (const Surroundings& by : surroundings) {
-            const Prediction here = cloud.predict(sample, by);
-            if (!here.exists()) continue;
-            const double limit =
-                std::max(least[static_cast<std::size_t>(sample)],
-                         largest * here.gain + smooth_residual(beside, by, here.reach));
-            if (limit >= best.limit) continue;
-            best.limit = limit;
-            best.part = here.residual / limit;
+            if (out[k]) result.push_back(changed[k]);
+        for (Index i : result) {
+            cloud_.trust(i, false);
+            normal_[static_cast<std::size_t>(i)] = none;
         }
-        if (!std::isfinite(best.limit)) best.part = 0;
-        return best;
+        return result;
     }
 
-    double smooth_residual(const std::vector<Index>& beside, const Surroundings& by,
-                           double reach) const {
-        std::vector<double> off(static_cast<std::size_t>(cloud.points().dim()));
-        SmoothResidual result(largest, reach, off.size());
-        for (Index i : beside) result.add(cloud.predict(i, by, off), off);
-        return result.value();
+    bool is_far_off(Index sample, const UsualResidual& usual, Neighbours& near) const {
+        constexpr double part = 0.67;
+        constexpr Index many = 80; // most know nothing of the sample
+        const double here = normal_[static_cast<std::size_t>(sample)];
+        const double least = least_[static_cast<std::size_t>(cloud_.original(sample))];
+        if (!std::isfinite(here) || here <= std::max(least / 3, part * usual.largest)) return false;
+        cloud_.nearest(sample, many, near);
+        std::vector<double> beside;
+        for (const auto& [square, i] : near)
+            if (const double x = normal_[static_cast<std::size_t>(i)]; std::isfinite(x))
+                beside.push_back(x);
+        return here > part * usual.ratio() * median(std::move(beside));
     }
 
-    /// Whether neighbours are about as badly predicted without it: of many, for where places are
-    /// uneven some see little of the shape.
-    bool unresolved(Index sample) const {
-        double worst = 0;
-        for (Index i : cloud.nearest(sample, 48))
-            if (const Prediction there = cloud.predict(i, closest_around); there.exists())
-                worst = std::max(worst, there.normal());
-        return cloud.predict(sample, closest_around).normal() <= 3 * worst;
+    /// Trusts those that are not far off, as the others beside an outlier's are without it, where
+    /// neighbours all around leave no doubt.
+    void take_back(std::vector<Index>& left) {
+        constexpr int most_rounds = 12;
+        constexpr double all_around = 1.35; // a mean of 18 on one side of a line has 1.5
+        const UsualResidual usual(normal_);
+        for (int round = 0; round < most_rounds; ++round) {
+            std::vector<char> back(left.size(), 0);
+            for_each_block(std::ssize(left), 64, [&](const Block& block) {
+                Neighbours near;
+                for (Index k = block.begin; k < block.end; ++k) {
+                    const Index i = left[static_cast<std::size_t>(k)];
+                    const Prediction there = cloud_.predict(i, near);
+                    normal_[static_cast<std::size_t>(i)] = there.normal();
+                    back[static_cast<std::size_t>(k)] =
+                        there.gain <= all_around && !is_far_off(i, usual, near) ? 1 : 0;
+                }
+            });
+            std::vector<Index> still;
+            for (std::size_t k = 0; k < left.size(); ++k) {
+                if (back[k])
+                    cloud_.trust(left[k], true);
+                else
+                    still.push_back(left[k]);
+            }
+            if (still.size() == left.size()) break;
+            left = std::move(still);
+        }
     }
+
+    /// Trusted samples whose neighbours these were.
+    std::vector<Index> around(const std::vector<Index>& samples) const {
+        std::vector<Index> result;
+        Neighbours near;
+        for (Index i : samples) {
+            cloud_.nearest(i, cloud_.process_size() / 2, near);
+            for (const auto& [square, beside] : near) result.push_back(beside);
+        }
+        std::ranges::sort(result);
+        result.erase(std::unique(result.begin(), result.end()), result.end());
+        return result;
+    }
+
+    static constexpr double none = std::numeric_limits<double>::infinity();
+    TrustedCloud& cloud_;
+    const std::vector<double>& least_;
+    std::vector<double> normal_;
 };
 
-/// Trusts those that are explained, the most certain first.
-void take_back(TrustedCloud& cloud, const CloudJudge& judge, std::vector<Index>& left) {
+/// A sample that is not trusted and what its neighbours say of it.
+struct Accused {
+    Index sample;
+    Neighbours neighbours;
+    double part = 0;                                        ///< the residual in limits
+    double limit = std::numeric_limits<double>::infinity(); ///< how far off it might be; infinite
+                                                            ///< where nobody knows
+};
+
+/// Anew where the neighbours are others than before.
+void judge(const TrustedCloud& cloud, double least, Accused& accused) {
+    constexpr double usual = 6;    // standard deviations
+    constexpr double beside = 2.5; // times what the process is off at one of the nearer half
+    Neighbours neighbours;
+    cloud.nearest(accused.sample, cloud.process_size(), neighbours);
+    const bool same =
+        std::ranges::equal(neighbours, accused.neighbours, {}, &TrustedCloud::Neighbour::sample,
+                           &TrustedCloud::Neighbour::sample);
+    if (same && std::isfinite(accused.limit)) return;
+    accused.neighbours = std::move(neighbours);
+    const LocalProcess process = cloud.process(accused.sample, accused.neighbours);
+    accused.part = 0;
+    accused.limit = std::numeric_limits<double>::infinity();
+    if (!process.exists()) return;
+    const double worst = process.of_neighbours().maxCoeff();
+    accused.limit = std::max(least, std::max(usual, beside * worst) * process.deviation());
+    accused.part = process.residual() / accused.limit;
+}
+
+/// Trusts those that are explained, the most certain first; those that nobody knows stay, too.
+void take_back(TrustedCloud& cloud, const std::vector<double>& least, std::vector<Accused>& left) {
     constexpr int most_rounds = 40;
     constexpr double more = 1.5;
-    double certain = more * judge.largest;
-    std::vector<Judge::Verdict> verdict(left.size());
+    double certain = 0;
     for (int round = 0; round < most_rounds; ++round) {
-        for_each_block(static_cast<Index>(left.size()), 4, [&](const Block& block) {
-            for (Index k = block.begin; k < block.end; ++k)
-                verdict[static_cast<std::size_t>(k)] = judge.of(left[static_cast<std::size_t>(k)]);
+        for_each_block(std::ssize(left), 4, [&](const Block& block) {
+            for (Index k = block.begin; k < block.end; ++k) {
+                Accused& accused = left[static_cast<std::size_t>(k)];
+                judge(cloud, least[static_cast<std::size_t>(cloud.original(accused.sample))],
+                      accused);
+            }
         });
-        double next = std::numeric_limits<double>::infinity(); // limit of one that is explained
-        for (std::size_t k = 0; k < left.size(); ++k)
-            if (verdict[k].part <= 1) next = std::min(next, verdict[k].limit);
+        const auto explained = [](const Accused& a) { return a.part <= 1; };
+        double next = std::numeric_limits<double>::infinity();
+        for (const Accused& a : left)
+            if (explained(a)) next = std::min(next, a.limit);
         if (next == std::numeric_limits<double>::infinity()) break;
         certain = std::max(certain, more * next);
-        std::vector<Index> still;
-        for (std::size_t k = 0; k < left.size(); ++k) {
-            if (verdict[k].part <= 1 && verdict[k].limit <= certain)
-                cloud.trust(left[k], true);
-            else
-                still.push_back(left[k]);
-        }
-        left = std::move(still);
+        std::erase_if(left, [&](const Accused& a) {
+            if (!explained(a) || a.limit > certain) return false;
+            cloud.trust(a.sample, true);
+            return true;
+        });
     }
+    std::erase_if(left, [](const Accused& a) { return !std::isfinite(a.limit); });
 }
 
 /// Those that have no more than three others among their eight nearest, nor one that has more
 /// beside it: many together are a part of the shape.
-std::vector<Index> alone(TrustedCloud& cloud, const std::vector<Index>& left) {
+std::vector<Index> alone(TrustedCloud& cloud, const std::vector<Accused>& left) {
     constexpr Index beside = 8;
     constexpr Index many = 4;
     std::vector<char> out(static_cast<std::size_t>(cloud.size()), 0);
-    for (Index i : left) out[static_cast<std::size_t>(i)] = 1;
-    for (Index i : left) cloud.trust(i, true);
-    std::vector<std::vector<Index>> around;
-    for (Index i : left) around.push_back(cloud.nearest(i, beside));
-    for (Index i : left) cloud.trust(i, false);
+    for (const Accused& a : left) {
+        out[static_cast<std::size_t>(a.sample)] = 1;
+        cloud.trust(a.sample, true);
+    }
+    std::vector<Neighbours> around(left.size());
+    for (std::size_t k = 0; k < left.size(); ++k) cloud.nearest(left[k].sample, beside, around[k]);
     std::vector<char> crowded(out.size(), 0);
     for (std::size_t k = 0; k < left.size(); ++k)
-        crowded[static_cast<std::size_t>(left[k])] =
-            std::ranges::count_if(
-                around[k], [&](Index i) { return out[static_cast<std::size_t>(i)] != 0; }) >= many;
+        crowded[static_cast<std::size_t>(left[k].sample)] =
+            std::ranges::count_if(around[k], [&](const auto& n) {
+                return out[static_cast<std::size_t>(n.sample)] != 0;
+            }) >= many;
     std::vector<Index> result;
     for (std::size_t k = 0; k < left.size(); ++k)
-        if (!crowded[static_cast<std::size_t>(left[k])] &&
-            std::ranges::none_of(
-                around[k], [&](Index i) { return crowded[static_cast<std::size_t>(i)] != 0; }))
-            result.push_back(left[k]);
+        if (!crowded[static_cast<std::size_t>(left[k].sample)] &&
+            std::ranges::none_of(around[k], [&](const auto& n) {
+                return crowded[static_cast<std::size_t>(n.sample)] != 0;
+            }))
+            result.push_back(cloud.original(left[k].sample));
+    std::ranges::sort(result);
     return result;
 }
 
@@ -178,17 +218,10 @@ std::vector<Index> alone(TrustedCloud& cloud, const std::vector<Index>& left) {
 std::vector<Index> cloud_outliers(const Points& points, const Points& places,
                                   const std::vector<double>& least) {
     TrustedCloud cloud(points, places);
-    std::vector<Index> left = leave_out(cloud, least);
-    std::vector<Index> rest;
-    for (Index i = 0; i < cloud.size(); ++i)
-        if (cloud.trusts(i)) rest.push_back(i);
-    if (rest.size() < left.size()) return {}; // nobody to ask
-    std::vector<double> normal(static_cast<std::size_t>(cloud.size()),
-                               std::numeric_limits<double>::infinity());
-    update(cloud, rest, normal);
-    const CloudJudge judge{cloud, least, UsualResidual(normal).largest};
-    take_back(cloud, judge, left);
-    std::erase_if(left, [&](Index i) { return judge.unresolved(i); });
+    std::vector<Accused> left;
+    for (Index i : Suspected(cloud, least).leave_out()) left.push_back({i, {}});
+    if (2 * std::ssize(left) > cloud.size()) return {}; // nobody to ask
+    take_back(cloud, least, left);
     return alone(cloud, left);
 }
 

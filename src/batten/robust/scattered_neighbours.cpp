@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace batten {
 
 namespace {
+
+constexpr double per_cell = 4; ///< samples, on the average
 
 struct Cells {
     std::array<double, 3> low{};
@@ -16,7 +19,7 @@ struct Cells {
     std::array<Index, 3> count{1, 1, 1};
 };
 
-/// Cubes over the places' box, four samples to each on the average.
+/// Cubes over the places' box.
 Cells cells_of(const Points& places) {
     Cells result;
     std::array<double, 3> extent{};
@@ -37,7 +40,7 @@ Cells cells_of(const Points& places) {
         }
     }
     if (extended == 0) return result;
-    result.width = std::pow(volume * 4 / static_cast<double>(places.size()), 1.0 / extended);
+    result.width = std::pow(volume * per_cell / static_cast<double>(places.size()), 1.0 / extended);
     constexpr double most = 1e3; // along an axis
     for (double e : extent) result.width = std::max(result.width, e / most);
     for (std::size_t d = 0; d < 3; ++d)
@@ -45,136 +48,176 @@ Cells cells_of(const Points& places) {
     return result;
 }
 
-/// Values of the polynomial terms up to a degree, the constant first.
-void terms(std::span<const double> x, int degree, std::vector<double>& value) {
-    value.assign(1, 1.0);
-    std::size_t begin = 0; // of the terms of the last degree, by their first factor
-    std::vector<std::size_t> start(x.size(), 0);
-    for (int k = 0; k < degree; ++k) {
-        const std::size_t end = value.size();
-        std::vector<std::size_t> next(x.size());
-        for (std::size_t d = 0; d < x.size(); ++d) {
-            next[d] = value.size();
-            for (std::size_t j = std::max(begin, start[d]); j < end; ++j)
-                value.push_back(x[d] * value[j]);
-        }
-        start = next;
-        begin = end;
+/// What least squares by a polynomial of second degree over so many axes miss of a sample.
+template <int axes>
+Prediction by_parabola(const Points& points, const Points& places, Index sample,
+                       const TrustedCloud::Neighbours& neighbours) {
+    constexpr int terms = 1 + axes + axes * (axes + 1) / 2;
+    using Terms = Eigen::Matrix<double, terms, 1>;
+    if (std::ssize(neighbours) < 3 * terms) return {};
+    const double scale = 1 / std::sqrt(neighbours.back().square);
+    if (!std::isfinite(scale)) return {};
+    Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
+    for (const auto& [square, i] : neighbours) {
+        std::array<double, axes> x;
+        for (int d = 0; d < axes; ++d)
+            x[static_cast<std::size_t>(d)] = scale * (places(i, d) - places(sample, d));
+        Terms value;
+        value(0) = 1;
+        int t = 1;
+        for (int d = 0; d < axes; ++d) value(t++) = x[static_cast<std::size_t>(d)];
+        for (std::size_t d = 0; d < axes; ++d)
+            for (std::size_t e = d; e < axes; ++e) value(t++) = x[d] * x[e];
+        normal.noalias() += value * value.transpose();
     }
+    const Eigen::LDLT<Eigen::Matrix<double, terms, terms>> factors(normal);
+    if (factors.vectorD().minCoeff() < 1e-10 * static_cast<double>(neighbours.size())) return {};
+    const Terms at_sample = factors.solve(Terms::Unit(0));
+    double sum_of_squares = 0;
+    for (Index k = 0; k < points.dim(); ++k) {
+        double off = 0;
+        for (const auto& [square, i] : neighbours) {
+            std::array<double, axes> x;
+            for (int d = 0; d < axes; ++d)
+                x[static_cast<std::size_t>(d)] = scale * (places(i, d) - places(sample, d));
+            double weight = at_sample(0);
+            int t = 1;
+            for (int d = 0; d < axes; ++d)
+                weight += at_sample(t++) * x[static_cast<std::size_t>(d)];
+            for (std::size_t d = 0; d < axes; ++d)
+                for (std::size_t e = d; e < axes; ++e) weight += at_sample(t++) * x[d] * x[e];
+            off += weight * (points(i, k) - points(sample, k));
+        }
+        sum_of_squares += off * off;
+    }
+    return {std::sqrt(sum_of_squares), std::sqrt(1 + at_sample(0))};
 }
 
 } // namespace
 
-TrustedCloud::TrustedCloud(Points points, Points places)
-    : points_(std::move(points)),
-      places_(std::move(places)),
-      trusted_(static_cast<std::size_t>(points_.size()), 1),
+TrustedCloud::TrustedCloud(const Points& points, const Points& places)
+    : points_(points.size(), points.dim()),
+      places_(places.size(), places.dim()),
+      order_(static_cast<std::size_t>(points.size())),
+      trusted_(order_.size(), 1),
       cells_({1}) {
-    const Cells cells = cells_of(places_);
+    const Cells cells = cells_of(places);
     low_ = cells.low;
     width_ = cells.width;
-    cells_ = GridIndex({cells.count[0], cells.count[1], cells.count[2]});
+    Cell count{1, 1, 1};
+    for (std::size_t d = 0; d < static_cast<std::size_t>(places.dim()); ++d)
+        count[3 - static_cast<std::size_t>(places.dim()) + d] = cells.count[d];
+    cells_ = GridIndex({count[0], count[1], count[2]});
+    std::vector<Index> cell_of(order_.size());
     first_.assign(static_cast<std::size_t>(cells_.size()) + 1, 0);
-    const auto at = [&](Index i) {
-        const std::array<Index, 3> c = cell(i);
-        return static_cast<std::size_t>(cells_.at({c[0], c[1], c[2], 0}));
-    };
-    for (Index i = 0; i < size(); ++i) ++first_[at(i) + 1];
+    for (Index i = 0; i < size(); ++i) {
+        const Cell c = cell(places[i]);
+        const Index at = cells_.at({c[0], c[1], c[2], 0});
+        cell_of[static_cast<std::size_t>(i)] = at;
+        ++first_[static_cast<std::size_t>(at) + 1];
+    }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    order_.resize(static_cast<std::size_t>(size()));
     std::vector<Index> next(first_);
-    for (Index i = 0; i < size(); ++i) order_[static_cast<std::size_t>(next[at(i)]++)] = i;
+    for (Index i = 0; i < size(); ++i) {
+        const Index to = next[static_cast<std::size_t>(cell_of[static_cast<std::size_t>(i)])]++;
+        order_[static_cast<std::size_t>(to)] = i;
+        std::ranges::copy(points[i], points_[to].begin());
+        std::ranges::copy(places[i], places_[to].begin());
+    }
 }
 
-std::array<Index, 3> TrustedCloud::cell(Index sample) const {
-    std::array<Index, 3> result{};
-    for (std::size_t d = 0; d < static_cast<std::size_t>(places_.dim()); ++d)
-        result[d] = std::min(
-            cells_.length(d) - 1,
-            static_cast<Index>((places_(sample, static_cast<Index>(d)) - low_[d]) / width_));
+TrustedCloud::Cell TrustedCloud::cell(std::span<const double> place) const {
+    Cell result{};
+    for (std::size_t d = 0; d < place.size(); ++d) {
+        const std::size_t axis = 3 - place.size() + d;
+        result[axis] =
+            std::min(cells_.length(axis) - 1, static_cast<Index>((place[d] - low_[d]) / width_));
+    }
     return result;
 }
 
-std::vector<Index> TrustedCloud::nearest(Index sample, Index count) const {
-    const std::array<Index, 3> here = cell(sample);
+/// How far everything is within those cells, both ends counted.
+double TrustedCloud::clear(Index sample, const Cell& low, const Cell& high) const {
+    double result = std::numeric_limits<double>::infinity();
+    const std::span<const double> place = std::as_const(places_)[sample];
+    for (std::size_t d = 0; d < place.size(); ++d) {
+        const std::size_t axis = 3 - place.size() + d;
+        const double at = place[d] - low_[d];
+        if (low[axis] > 0) result = std::min(result, at - static_cast<double>(low[axis]) * width_);
+        if (high[axis] < cells_.length(axis) - 1)
+            result = std::min(result, static_cast<double>(high[axis] + 1) * width_ - at);
+    }
+    return result;
+}
+
+void TrustedCloud::nearest(Index sample, Index count, Neighbours& found) const {
+    const std::span<const double> place = std::as_const(places_)[sample];
+    const Cell here = cell(place);
     const Index widest = std::max({cells_.length(0), cells_.length(1), cells_.length(2)});
-    std::vector<std::pair<double, Index>> found;
-    const auto last = [&] { return found.begin() + count - 1; };
-    for (Index ring = 0; ring < widest; ++ring) {
-        if (std::ssize(found) >= count) {
-            std::ranges::nth_element(found, last());
-            if (last()->first < static_cast<double>(ring - 1) * width_) break;
-        }
-        std::array<Index, 3> low{};
-        std::array<Index, 3> high{};
+    for (Index ring = 1;; ++ring) {
+        Cell low{};
+        Cell high{};
         for (std::size_t d = 0; d < 3; ++d) {
             low[d] = std::max<Index>(0, here[d] - ring);
             high[d] = std::min(cells_.length(d) - 1, here[d] + ring);
         }
+        const double all_within = clear(sample, low, high);
+        // of evenly spread samples as many are nearer as are asked for, where this is larger
+        found.clear();
         for (Index a = low[0]; a <= high[0]; ++a)
-            for (Index b = low[1]; b <= high[1]; ++b)
-                for (Index c = low[2]; c <= high[2]; ++c) {
-                    if (std::max({std::abs(a - here[0]), std::abs(b - here[1]),
-                                  std::abs(c - here[2])}) != ring)
-                        continue;
-                    const auto k = static_cast<std::size_t>(cells_.at({a, b, c, 0}));
-                    for (Index j = first_[k]; j < first_[k + 1]; ++j)
-                        if (const Index i = order_[static_cast<std::size_t>(j)];
-                            i != sample && trusts(i))
-                            found.emplace_back(distance(places_[i], places_[sample]), i);
+            for (Index b = low[1]; b <= high[1]; ++b) {
+                const auto begin = first_[static_cast<std::size_t>(cells_.at({a, b, low[2], 0}))];
+                const auto end =
+                    first_[static_cast<std::size_t>(cells_.at({a, b, high[2], 0})) + 1];
+                for (Index i = begin; i < end; ++i) {
+                    if (i == sample || !trusts(i)) continue;
+                    double square = 0;
+                    for (std::size_t d = 0; d < place.size(); ++d) {
+                        const double far = std::as_const(places_)[i][d] - place[d];
+                        square += far * far;
+                    }
+                    found.push_back({square, i});
                 }
+            }
+        if (ring >= widest) break;
+        if (std::ssize(found) < count) continue;
+        std::ranges::nth_element(found, found.begin() + count - 1, {}, &Neighbour::square);
+        if (found[static_cast<std::size_t>(count - 1)].square < all_within * all_within) break;
     }
-    std::ranges::sort(found); // by distance, then by index
-    std::vector<Index> result;
-    for (const auto& [far, i] : found) {
-        if (std::ssize(result) >= count && far > (1 + 1e-9) * last()->first) break;
-        result.push_back(i);
-    }
-    return result;
+    const Index least = std::min(count, std::ssize(found));
+    if (least == 0) return;
+    std::ranges::nth_element(found, found.begin() + least - 1, {}, &Neighbour::square);
+    const double last = (1 + 1e-9) * found[static_cast<std::size_t>(least - 1)].square;
+    std::erase_if(found, [&](const Neighbour& n) { return n.square > last; });
+    std::ranges::sort(found, [](const Neighbour& a, const Neighbour& b) {
+        return a.square < b.square || (a.square == b.square && a.sample < b.sample);
+    });
 }
 
-Prediction TrustedCloud::predict(Index sample, const Surroundings& by,
-                                 std::span<double> off) const {
-    const auto dim = static_cast<std::size_t>(places_.dim());
-    std::vector<double> value;
-    std::vector<double> x(dim, 0);
-    terms(x, by.degree, value);
-    const auto p = static_cast<Index>(value.size());
-    const std::vector<Index> beside = nearest(sample, by.times * p);
-    const auto k = static_cast<Index>(beside.size());
-    if (k < by.times * p) return {};
-    const double scale = distance(places_[beside.back()], places_[sample]);
-    if (!(scale > 0)) return {};
-    Eigen::MatrixXd a(k, p);
+Prediction TrustedCloud::predict(Index sample, Neighbours& found) const {
+    switch (places_.dim()) {
+    case 1:
+        nearest(sample, 9, found);
+        return by_parabola<1>(points_, places_, sample, found);
+    case 2:
+        nearest(sample, 18, found);
+        return by_parabola<2>(points_, places_, sample, found);
+    default:
+        nearest(sample, 30, found);
+        return by_parabola<3>(points_, places_, sample, found);
+    }
+}
+
+LocalProcess TrustedCloud::process(Index sample, const Neighbours& neighbours) const {
+    const std::ptrdiff_t k = std::ssize(neighbours);
+    Eigen::MatrixXd places(k, places_.dim());
+    Eigen::MatrixXd values(k, points_.dim());
     for (Index j = 0; j < k; ++j) {
-        const Index i = beside[static_cast<std::size_t>(j)];
-        for (std::size_t d = 0; d < dim; ++d)
-            x[d] = (places_(i, static_cast<Index>(d)) - places_(sample, static_cast<Index>(d))) /
-                   scale;
-        terms(x, by.degree, value);
-        for (Index t = 0; t < p; ++t) a(j, t) = value[static_cast<std::size_t>(t)];
+        const Index i = neighbours[static_cast<std::size_t>(j)].sample;
+        for (Index d = 0; d < places_.dim(); ++d) places(j, d) = places_(i, d) - places_(sample, d);
+        for (Index d = 0; d < points_.dim(); ++d) values(j, d) = points_(i, d) - points_(sample, d);
     }
-    const Eigen::LDLT<Eigen::MatrixXd> factors(a.transpose() * a);
-    if (factors.vectorD().minCoeff() < 1e-10 * static_cast<double>(k)) return {};
-    const Eigen::VectorXd weight = a * factors.solve(Eigen::VectorXd::Unit(p, 0));
-    Prediction result;
-    result.gain = std::sqrt(1 + weight.squaredNorm());
-    for (Index j = 0; j < k; ++j)
-        result.reach +=
-            std::abs(weight(j)) *
-            std::pow(distance(places_[beside[static_cast<std::size_t>(j)]], places_[sample]),
-                     by.degree + 1);
-    double square = 0;
-    for (Index d = 0; d < points_.dim(); ++d) {
-        double sum = 0;
-        for (Index j = 0; j < k; ++j)
-            sum +=
-                weight(j) * (points_(beside[static_cast<std::size_t>(j)], d) - points_(sample, d));
-        square += sum * sum;
-        if (!off.empty()) off[static_cast<std::size_t>(d)] = sum;
-    }
-    result.residual = std::sqrt(square);
-    return result;
+    return {places, values};
 }
 
 } // namespace batten

@@ -1,0 +1,198 @@
+#include <batten/robust/local_process.hpp>
+
+#include <batten/core/vector_clones.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace batten {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+enum class Smoothness { once, always };
+
+constexpr std::array lengths{0.25, 0.5, 1.0, 2.0, 4.0}; ///< in parts of the neighbours' radius
+constexpr std::array noises{1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 1.0, 100.0}; ///< their variance
+constexpr std::size_t middle = 2;                                       ///< of the lengths
+
+/// Covariances at distances in lengths, on the diagonal and below it, of a process that can be
+/// differentiated once (Matern 3/2) or always.
+MatrixXd covariances(const MatrixXd& distances, Smoothness smoothness, double length) {
+    MatrixXd result(distances.rows(), distances.cols());
+    for (Index j = 0; j < distances.cols(); ++j) {
+        const Index count = distances.rows() - j;
+        const auto far = distances.col(j).tail(count).array() / length;
+        auto here = result.col(j).tail(count).array();
+        if (smoothness == Smoothness::always) {
+            here = (-0.5 * far.square()).exp();
+        } else {
+            here = std::sqrt(3.0) * far;
+            here = (1 + here) * (-here).exp();
+        }
+    }
+    return result;
+}
+
+/// Eliminates `n` columns of length `rows`, whose first n rows are symmetric, of which the lower
+/// half is read: they become the factor L, those below become theirs times L^-T. False where a
+/// pivot is not positive.
+BATTEN_VECTOR_CLONES
+bool eliminate(double* a, Index rows, Index n) {
+    for (Index j = 0; j < n; ++j) {
+        double* column = a + j * rows;
+        if (!(column[j] > 0)) return false;
+        const double scale = 1 / std::sqrt(column[j]);
+        for (Index i = j; i < rows; ++i) column[i] *= scale;
+        for (Index c = j + 1; c < n; ++c) {
+            const double factor = column[c];
+            double* next = a + c * rows;
+            for (Index i = c; i < rows; ++i) next[i] -= factor * column[i];
+        }
+    }
+    return true;
+}
+
+/// What does not depend on the kind of process.
+struct Neighbourhood {
+    MatrixXd distances; ///< of the neighbours from each other and, in the last row, the sample
+    MatrixXd terms;     ///< of the drift, at the neighbours
+    MatrixXd rest;      ///< of the values without a drift
+};
+
+/// A process of unit size through the neighbours.
+struct Solved {
+    /// L of their covariance with noise, and times L^-T, as rows: that with the sample, the drift's
+    /// terms, the values.
+    MatrixXd factor;
+    Eigen::LLT<MatrixXd> of_drift;
+    double noise = 1;
+    double variance = 0; ///< likeliest size
+    double likelihood = -std::numeric_limits<double>::infinity();
+
+    auto sample() const { return factor.row(factor.cols()); }
+    auto terms(const Neighbourhood& by) const {
+        return factor.middleRows(factor.cols() + 1, by.terms.cols());
+    }
+    auto values(const Neighbourhood& by) const { return factor.bottomRows(by.rest.cols()); }
+    /// Of the values by the drift.
+    MatrixXd explained(const Neighbourhood& by) const {
+        return of_drift.matrixL().solve(terms(by) * values(by).transpose());
+    }
+
+    Solved() = default;
+    Solved(const Neighbourhood& by, const MatrixXd& covariance, double of_noise) : noise(of_noise) {
+        const Index k = covariance.cols();
+        factor.resize(k + 1 + by.terms.cols() + by.rest.cols(), k);
+        factor << covariance, by.terms.transpose(), by.rest.transpose();
+        factor.diagonal().array() += noise;
+        if (!eliminate(factor.data(), factor.rows(), k)) return;
+        of_drift.compute(terms(by) * terms(by).transpose());
+        if (of_drift.info() != Eigen::Success) return;
+        const auto free = static_cast<double>(k - by.terms.cols());
+        variance = (values(by).squaredNorm() - explained(by).squaredNorm()) / free;
+        if (!(variance > 0)) return;
+        likelihood = -free * std::log(variance) - 2 * factor.diagonal().array().log().sum() -
+                     2 * of_drift.matrixLLT().diagonal().array().log().sum();
+    }
+};
+
+/// The likeliest process, sought uphill from the middle of the lengths and noises.
+class Likeliest {
+  public:
+    explicit Likeliest(const Neighbourhood& by) : by_(by) {
+        seek(Smoothness::always);
+        seek(Smoothness::once);
+    }
+
+    Solved solved;
+
+  private:
+    void seek(Smoothness smoothness) {
+        std::size_t noise = noises.size() / 2;
+        const double at_middle = of_length(smoothness, middle, noise);
+        for (const int step : {-1, 1}) {
+            double last = at_middle;
+            std::size_t near = noise;
+            for (std::size_t k = middle; step < 0 ? k > 0 : k + 1 < lengths.size();) {
+                k = step < 0 ? k - 1 : k + 1;
+                const double next = of_length(smoothness, k, near);
+                if (!(next > last)) break;
+                last = next;
+            }
+        }
+    }
+
+    /// Likelihood of a length with the noise that is likeliest, sought from one which it replaces.
+    double of_length(Smoothness smoothness, std::size_t length, std::size_t& noise) {
+        const MatrixXd covariance = covariances(by_.distances, smoothness, lengths[length]);
+        double best = take(covariance, noise);
+        for (const int step : {1, -1}) {
+            const std::size_t before = noise;
+            while (step > 0 ? noise + 1 < noises.size() : noise > 0) {
+                const double next = take(covariance, step > 0 ? noise + 1 : noise - 1);
+                if (!(next > best)) break;
+                best = next;
+                noise = step > 0 ? noise + 1 : noise - 1;
+            }
+            if (noise != before) break;
+        }
+        return best;
+    }
+
+    double take(const MatrixXd& covariance, std::size_t noise) {
+        Solved one(by_, covariance, noises[noise]);
+        const double likelihood = one.likelihood;
+        if (likelihood > solved.likelihood) std::swap(solved, one);
+        return likelihood;
+    }
+
+    const Neighbourhood& by_;
+};
+
+} // namespace
+
+LocalProcess::LocalProcess(const MatrixXd& places, const MatrixXd& values) {
+    const Index k = places.rows();
+    const Index p = places.cols() + 1;
+    const double radius = places.rowwise().norm().maxCoeff();
+    if (!(radius > 0) || k < 2 * p) return;
+    Neighbourhood by{MatrixXd(k + 1, k), MatrixXd(k, p), {}};
+    for (Index j = 0; j < k; ++j) {
+        for (Index i = j; i < k; ++i)
+            by.distances(i, j) = (places.row(i) - places.row(j)).norm() / radius;
+        by.distances(k, j) = places.row(j).norm() / radius;
+    }
+    by.terms << VectorXd::Ones(k), places / radius;
+    const Eigen::ColPivHouseholderQR<MatrixXd> straight(by.terms);
+    if (straight.rank() < p) return;
+    const MatrixXd by_drift = straight.solve(values);
+    by.rest = values - by.terms * by_drift; // for the sake of rounding
+    const Solved best = Likeliest(by).solved;
+    if (!(best.variance > 0)) return;
+    const auto lower = best.factor.topRows(k).triangularView<Eigen::Lower>();
+    const MatrixXd drift = best.of_drift.matrixL().solve(best.terms(by)); // orthonormal rows
+    const VectorXd to_drift =
+        best.of_drift.matrixL().solve(VectorXd::Unit(p, 0)) - drift * best.sample().transpose();
+    residual_ = (best.sample() * best.values(by).transpose() +
+                 to_drift.transpose() * best.explained(by) + by_drift.row(0))
+                    .norm();
+    deviation_ = std::sqrt(best.variance *
+                           (1 + best.noise - best.sample().squaredNorm() + to_drift.squaredNorm()));
+    // the inverse of the covariance without the drift is R^T R
+    MatrixXd r = lower.solve(MatrixXd::Identity(k, k));
+    r -= drift.transpose() * (drift * r);
+    const MatrixXd off = r.transpose() * best.values(by).transpose();
+    of_neighbours_.resize(k);
+    for (Index j = 0; j < k; ++j)
+        of_neighbours_(j) = off.row(j).norm() / (r.col(j).norm() * std::sqrt(best.variance));
+}
+
+} // namespace batten

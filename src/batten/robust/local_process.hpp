@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace batten {
+
+/// A Gaussian process through the neighbours of a sample: a linear drift, a covariance that falls
+/// with the distance, and white noise. How smooth it is, how far it reaches and how large the
+/// noise is are what is likeliest of the neighbours [Patterson1971], [Rasmussen2006] (5.8).
+class LocalProcess {
+  public:
+    /// `places` (k x 1 to 3) and `values` (k x dim) of the neighbours, seen from the sample, whose
+    /// own are zero; k at least twice the drift's terms.
+    LocalProcess(const Eigen::MatrixXd& places, const Eigen::MatrixXd& values);
+
+    /// Whether the neighbours determine the drift.
+    bool exists() const { return deviation_ > 0; }
+    /// How far the sample is from where the process has it.
+    double residual() const { return residual_; }
+    /// Standard deviation of that.
+    double deviation() const { return deviation_; }
+    /// Residuals of the neighbours, each by the process without it, in its standard deviations.
+    const Eigen::VectorXd& of_neighbours() const { return of_neighbours_; }
+
+  private:
+    double residual_ = 0;
+    double deviation_ = 0;
+    Eigen::VectorXd of_neighbours_;
+};
+
+} // namespace batten
