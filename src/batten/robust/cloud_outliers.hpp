@@ -7,13 +7,12 @@
 namespace batten {
 
 /// Samples of a cloud (m x dim) over parameters (m x 1 to 3) that disagree with their nearest
-/// neighbours, ascending: what the most certain local polynomial without the sample predicts is
-/// further away than five to six standard deviations of noise, than four times what the same
-/// polynomial is off beside it, and than `least` (one per sample, infinite for one that stays).
+/// neighbours, ascending: by the likeliest Gaussian process through these they are further off than
+/// six standard deviations, than 2.5 times what it is off at any of these, and than `least` (one
+/// per sample, infinite for one that stays).
 ///
 /// The farthest are left out first and the others judged anew without them; at last what the rest
-/// explains comes back, and what its neighbours are as badly predicted without stays, and so
-/// do many together.
+/// explains comes back, the most certain first. Many together stay.
 std::vector<Index> cloud_outliers(const Points& points, const Points& places,
                                   const std::vector<double>& least);
 

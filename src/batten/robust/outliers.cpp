@@ -20,7 +20,7 @@ std::vector<double> least_residuals(const Problem& problem) {
     std::vector<double> least = problem.tolerance;
     if (least.empty())
         least.assign(static_cast<std::size_t>(problem.samples.size()),
-                     (problem.kind == SampleKind::cloud ? 1e-4 : 1e-9) * problem.size);
+                     (problem.kind == SampleKind::cloud ? 1e-5 : 1e-9) * problem.size);
     constexpr double free = std::numeric_limits<double>::infinity();
     const HoldOptions& hold = problem.options.hold;
     for (Index i : hold.interpolate) least[static_cast<std::size_t>(i)] = free;
