@@ -143,13 +143,13 @@ def scattered(spline, at, derived=None):
     return values
 
 
-def to_spline(points, spline):
+def to_spline(points, spline, finer=1):
     """Distance of each point from a curve or surface: from the nearest of dense places in the nearest pieces by damped Gauss-Newton steps
     within each piece. A point of the spline proves it: it is never too small."""
     axes = range(len(spline["degree"]))
     control = control_points(spline)
     breaks = [places(spline, k, 1) for k in axes]
-    each = [max(40 if len(axes) == 1 else 20, 100 // (len(t) - 1)) for t in breaks]
+    each = [finer * max(40 if len(axes) == 1 else 20, 100 // (len(t) - 1)) for t in breaks]
     inner = [np.concatenate([a + (b - a) * (np.arange(n) + 0.5) / n for a, b in zip(t, t[1:])]) for t, n in zip(breaks, each)]
     dense = evaluate(spline, *inner)
     index = [i.ravel() for i in np.indices(dense.shape[:-1])]
@@ -275,7 +275,10 @@ class SampledFiles(InFolder):
         weights = rng.dirichlet([1, 1, 1], len(some_of))
         weights[::3] = (0.5, 0, 0.5)  # diagonals, where a twist shows most
         on = np.einsum("ik,ikd->id", weights, some_of)
-        back = np.min([to_spline(on, face) for face in shown], axis=0).max()
+        back = np.min([to_spline(on, face) for face in shown], axis=0)
+        if (far := back > allowed).any():  # or the search was too coarse for a fold
+            back[far] = np.min([to_spline(on[far], face, finer=4) for face in shown], axis=0)
+        back = back.max()
         self.assertLessEqual(out, allowed, what)
         self.assertLessEqual(back, allowed, what)
         return max(out, back) / allowed

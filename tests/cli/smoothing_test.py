@@ -263,6 +263,19 @@ class Smoothing(InFolder):
         for factor in ("auto", 0.5):
             done = self.run_batten("fit", "height.csv", "--parameters", "line.csv", "-n", "14x11", "--smooth", str(factor), "--smooth-order", "3")
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn("no factor does", done.stderr)
+
+    def test_an_iteration_that_ends_before_the_minimum_missed_it(self):
+        rng = np.random.default_rng(3)
+        at = rng.random((3000, 3))
+        np.save(self.folder / "at.npy", at)
+        np.save(self.folder / "q.npy", (np.sin(5 * at[:, 0]) * np.cos(4 * at[:, 1]) + at[:, 2] + rng.normal(0, 0.01, 3000))[:, None])
+        fit = lambda *more: self.run_batten("fit", "q.npy", "--parameters", "at.npy", "-n", "8x8x8", "--smooth", "10", *more)
+        self.assertEqual(fit("-m", "direct").returncode, 0)
+        short = fit("-m", "cg")
+        self.assertEqual(short.returncode, 4, short.stdout)
+        self.assertIn("missed      relative gradient", short.stdout)
+        self.assertEqual(fit("-m", "cg", "--max-iterations", "50").returncode, 0)  # as many as were asked for
 
     def test_no_unit_counts(self):
         rng = np.random.default_rng(5)

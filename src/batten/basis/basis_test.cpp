@@ -68,6 +68,18 @@ TEST(Knots, follow_equation_9_69) {
     EXPECT_DOUBLE_EQ(k[5], (1 - 2.0 / 3) * 0.5 + 2.0 / 3 * 0.6); // 6.667: between t_5 and t_6
 }
 
+TEST(Knots, ascend_among_parameters_that_repeat) {
+    for (int places = 2; places < 40; ++places) {
+        std::vector<double> t;
+        for (int k = 0; k < places; ++k)
+            for (int j = 0; j < 3 + 7 * k % 11; ++j) t.push_back(k * 0.1 / places + 0.9 * k / 97);
+        for (Closure closure : {Closure::open, Closure::closed})
+            for (Index n = max_degree + 1; n < places; ++n)
+                EXPECT_NO_THROW(
+                    knots_from_parameters(t, max_degree, n, closure, KnotPlacement::both_ends));
+    }
+}
+
 TEST(Knots, a_closed_axis_is_periodic_and_wraps) {
     const KnotVector k = uniform_knots(3, 7, 0, 1, Closure::closed);
     EXPECT_EQ(k.control_count(), 10);

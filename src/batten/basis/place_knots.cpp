@@ -43,8 +43,7 @@ KnotVector knots_from_parameters(std::span<const double> parameters, int degree,
         const auto i = static_cast<Index>(std::floor(jd));
         const double alpha = jd - static_cast<double>(i);
         const double next = i < m ? parameters[static_cast<std::size_t>(i)] : 1;
-        interior.push_back((1 - alpha) * parameters[static_cast<std::size_t>(i - 1)] +
-                           alpha * next);
+        interior.push_back(std::lerp(parameters[static_cast<std::size_t>(i - 1)], next, alpha));
     }
     if (closed) return knots_around(degree, interior, 0, 1, closure);
     return knots_around(degree, interior, parameters.front(), parameters.back(), closure);

@@ -64,7 +64,11 @@ std::vector<Goal> judged(const FitReport& report, const Problem& problem) {
     if (stop.gradient > 0 && (report.iterated() || direct))
         state("gradient", stop.gradient, report.gradient_norm);
     const double least = exactness * problem.size;
-    if (report.held_back > least && stop.relative_gradient > 0) // it locked before its stop
+    const bool locked = report.held_back > least;                // before its stop
+    const bool unfinished = problem.options.smooth.lambda > 0 && // and nobody asked for less
+                            report.termination == Termination::iteration_limit &&
+                            stop.max_iterations == StopRule().max_iterations;
+    if ((locked || unfinished) && stop.relative_gradient > 0)
         state("relative gradient", stop.relative_gradient,
               report.gradient_norm / report.first_gradient_norm);
     if (report.interpolated > 0) state("exact samples", least, report.constraint_error);

@@ -8,6 +8,7 @@
 #include <batten/measure/deviation.hpp>
 #include <batten/problem/subset.hpp>
 #include <batten/robust/outliers.hpp>
+#include <batten/system/roughness.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -15,6 +16,15 @@
 namespace batten {
 
 namespace {
+
+/// Where a stated factor of roughness leaves something undetermined.
+const char* what_may_do(const Problem& problem) {
+    const bool none =
+        problem.kind == SampleKind::cloud &&
+        !determine_smoothest(problem.parameters.scattered, problem.options.smooth.order);
+    return none ? "no factor does: their parameters do not even determine the smoothest surface"
+                : "another factor may do";
+}
 
 /// The driver's answer. Where nobody named a driver and the direct solution finds control points
 /// that no sample determines after all, an iteration leaves these where it starts.
@@ -37,8 +47,8 @@ Fitted answered(const Problem& problem, const Choice& choice) {
                 fitted.report.termination == Termination::converged)
                 return fitted; // else nothing is determined but for rounding
         if (problem.options.smooth.lambda > 0)
-            throw InvalidInput(fmt::format("smoothing by {}: {}; another factor may do",
-                                           problem.options.smooth.lambda, error.what()));
+            throw InvalidInput(fmt::format("smoothing by {}: {}; {}", problem.options.smooth.lambda,
+                                           error.what(), what_may_do(problem)));
         if (!others || smooth) throw;
         return by(other, fmt::format("{}: an iteration leaves it where it starts", error.what()));
     }

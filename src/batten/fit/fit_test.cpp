@@ -239,6 +239,27 @@ TEST(Fit, identical_consecutive_samples_are_legal_and_said) {
               "axis 0: 1 identical consecutive samples share a parameter and count each");
 }
 
+TEST(Fit, a_sensor_may_stand_still_for_most_samples) {
+    PointSet track(240, 2);
+    for (Index i = 0; i < track.size(); ++i) {
+        const Index place = i < 16 ? i : i < 216 ? 16 : i - 200; // 200 samples at one of 40 places
+        const double t = static_cast<double>(place) / 39;
+        track(i, 0) = 2 * t;
+        track(i, 1) = std::sin(5 * t);
+    }
+    for (Closure closure : {Closure::open, Closure::closed})
+        for (int degree : {1, 3, 7}) {
+            const FitResult result =
+                fit(sequence(PointSet(track)),
+                    {.shape = {.degree = {degree}, .control_points = {20}, .closures = {closure}}});
+            if (closure == Closure::open) {
+                EXPECT_LT(result.report.deviation.maximum, 0.03) << degree;
+            }
+            EXPECT_EQ(result.spline.axes()[0].breakpoints().size(),
+                      static_cast<std::size_t>(closure == Closure::open ? 21 - degree : 21));
+        }
+}
+
 TEST(Threads, do_not_change_a_bit) {
     struct Problem {
         Samples samples;

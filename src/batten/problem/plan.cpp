@@ -76,6 +76,24 @@ KnotVector with_seam(const KnotVector& knots, int copies) {
     return knots_around(knots.degree(), interior, knots.begin(), knots.end(), Closure::closed);
 }
 
+/// The parameters among which knots are placed: each once where what is wanted is smooth, or where
+/// as many samples share one as are in a span, for knots would meet there.
+std::vector<double> knot_places(const Problem& problem, std::size_t axis, Index n) {
+    const std::vector<double>& t = problem.parameters.axes[axis];
+    const auto m = static_cast<Index>(t.size());
+    std::vector<double> differing = apart(t);
+    if (problem.options.smooth.wanted) return differing;
+    const Index spans = n - problem.axes.degree[axis];
+    Index run = 1;
+    Index longest = 1;
+    for (Index i = 1; i < m; ++i) {
+        run = t[static_cast<std::size_t>(i)] == t[static_cast<std::size_t>(i - 1)] ? run + 1 : 1;
+        longest = std::max(longest, run);
+    }
+    const bool meet = n < m && (longest - 1) * spans >= m;
+    return meet ? differing : t;
+}
+
 KnotVector axis_knots(const Problem& problem, std::size_t axis) {
     const ShapeOptions& shape = problem.options.shape;
     const AxisPlan& plan = problem.axes;
@@ -94,12 +112,8 @@ KnotVector axis_knots(const Problem& problem, std::size_t axis) {
                         degree, shape.seam_continuity, degree + 1 + copies, n + copies));
     const KnotPlacement rule = placement_of(problem.options);
     const bool even = rule == KnotPlacement::uniform || problem.kind == SampleKind::cloud;
-    // what is smooth needs no knots between samples that repeat
-    const std::vector<double> places = even ? std::vector<double>()
-                                       : problem.options.smooth.wanted
-                                           ? apart(problem.parameters.axes[axis])
-                                           : problem.parameters.axes[axis];
-    const bool fewer = problem.options.smooth.wanted && static_cast<Index>(places.size()) < n;
+    const std::vector<double> places = even ? std::vector<double>() : knot_places(problem, axis, n);
+    const bool fewer = static_cast<Index>(places.size()) < n;
     const KnotVector knots =
         even || fewer
             ? uniform_knots(degree, n, closed ? 0 : extent.begin, closed ? 1 : extent.end, closure)

@@ -1,5 +1,9 @@
 #include <batten/system/roughness.hpp>
 
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -67,6 +71,38 @@ BandedMatrix unit_roughness_matrix(const KnotVector& knots, int order) {
     BandedMatrix matrix(knots.free_count(), knots.degree(), knots.closure());
     matrix.add(unit_roughness_scale(knots, order), roughness_matrix(knots, order));
     return matrix;
+}
+
+bool determine_smoothest(const Points& places, int order) {
+    std::vector<double> low(places[0].begin(), places[0].end());
+    std::vector<double> high = low;
+    for (Index i = 0; i < places.size(); ++i)
+        for (std::size_t d = 0; d < low.size(); ++d) {
+            low[d] = std::min(low[d], places[i][d]);
+            high[d] = std::max(high[d], places[i][d]);
+        }
+    Index terms = 1;
+    for (std::size_t d = 0; d < low.size(); ++d) terms *= order;
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(terms, terms);
+    Eigen::VectorXd value(terms);
+    for (Index i = 0; i < places.size(); ++i) {
+        value(0) = 1;
+        Index count = 1;
+        for (std::size_t d = 0; d < low.size(); ++d) {
+            const double half = (high[d] - low[d]) / 2;
+            const double x = half > 0 ? (places[i][d] - low[d]) / half - 1 : 0;
+            const std::array<double, 3> legendre{1, x, 1.5 * x * x - 0.5};
+            for (Index k = count; k < order * count; ++k)
+                value(k) = value(k % count) * legendre[static_cast<std::size_t>(k / count)];
+            count *= order;
+        }
+        normal.noalias() += value * value.transpose();
+    }
+    constexpr double rounding = 1e-12;
+    const Eigen::VectorXd spread =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal, Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    return spread(0) > rounding * spread(terms - 1);
 }
 
 } // namespace batten

@@ -2,6 +2,7 @@
 
 #include <batten/basis/active_functions.hpp>
 #include <batten/core/function_ref.hpp>
+#include <batten/core/points.hpp>
 #include <batten/system/banded_matrix.hpp>
 
 namespace batten {
@@ -23,5 +24,9 @@ double unit_roughness_scale(const KnotVector& knots, int order);
 void for_each_roughness_row(
     const KnotVector& knots, int order, int nodes,
     FunctionRef<void(double weight, const ActiveFunctions& derivatives)> visit);
+
+/// Whether places (m x 1 to 3) determine what has no roughness: polynomials of lower degree than
+/// the order along every axis. Else no factor of the sum of the axes' roughness makes a fit unique.
+bool determine_smoothest(const Points& places, int order);
 
 } // namespace batten
