@@ -271,6 +271,13 @@ class Outliers(InFolder):
             lost, total = lost + len(found), total + samples
         self.assertLessEqual(lost, 1e-3 * total)
 
+    def test_of_a_plane_without_noise(self):
+        place = np.random.default_rng(4).random((400, 2))
+        for heights in (np.zeros(400), 3 * place[:, 0] - place[:, 1]):
+            heights = heights.copy()
+            heights[[7, 250]] += (0.1, -0.02)
+            self.assertEqual(self.set_aside(np.column_stack([place, heights]), "-n", "6x6", "--project", "xy")[0], [7, 250])
+
     def test_in_few_samples(self):
         for seed in some(range(60)):
             rng = np.random.default_rng(seed)

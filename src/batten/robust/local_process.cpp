@@ -175,8 +175,11 @@ LocalProcess::LocalProcess(const MatrixXd& places, const MatrixXd& values) {
     if (straight.rank() < p) return;
     const MatrixXd by_drift = straight.solve(values);
     by.rest = values - by.terms * by_drift; // for the sake of rounding
+    exists_ = true;
+    residual_ = by_drift.row(0).norm();
+    of_neighbours_.setZero(k);
     const Solved best = Likeliest(by).solved;
-    if (!(best.variance > 0)) return;
+    if (!(best.variance > 0)) return; // nothing but the drift
     const auto lower = best.factor.topRows(k).triangularView<Eigen::Lower>();
     const MatrixXd drift = best.of_drift.matrixL().solve(best.terms(by)); // orthonormal rows
     const VectorXd to_drift =
@@ -190,7 +193,6 @@ LocalProcess::LocalProcess(const MatrixXd& places, const MatrixXd& values) {
     MatrixXd r = lower.solve(MatrixXd::Identity(k, k));
     r -= drift.transpose() * (drift * r);
     const MatrixXd off = r.transpose() * best.values(by).transpose();
-    of_neighbours_.resize(k);
     for (Index j = 0; j < k; ++j)
         of_neighbours_(j) = off.row(j).norm() / (r.col(j).norm() * std::sqrt(best.variance));
 }

@@ -14,15 +14,16 @@ class LocalProcess {
     LocalProcess(const Eigen::MatrixXd& places, const Eigen::MatrixXd& values);
 
     /// Whether the neighbours determine the drift.
-    bool exists() const { return deviation_ > 0; }
+    bool exists() const { return exists_; }
     /// How far the sample is from where the process has it.
     double residual() const { return residual_; }
-    /// Standard deviation of that.
+    /// Standard deviation of that, 0 where the neighbours have neither noise nor a bend.
     double deviation() const { return deviation_; }
     /// Residuals of the neighbours, each by the process without it, in its standard deviations.
     const Eigen::VectorXd& of_neighbours() const { return of_neighbours_; }
 
   private:
+    bool exists_ = false;
     double residual_ = 0;
     double deviation_ = 0;
     Eigen::VectorXd of_neighbours_;
