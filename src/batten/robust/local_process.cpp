@@ -72,7 +72,7 @@ struct Solved {
     /// L of their covariance with noise, and times L^-T, as rows: that with the sample, the drift's
     /// terms, the values.
     MatrixXd factor;
-    Eigen::LLT<MatrixXd> of_drift;
+    MatrixXd of_drift; ///< factor of the products of the drift's terms
     double noise = 1;
     double variance = 0; ///< likeliest size
     double likelihood = -std::numeric_limits<double>::infinity();
@@ -84,7 +84,7 @@ struct Solved {
     auto values(const Neighbourhood& by) const { return factor.bottomRows(by.rest.cols()); }
     /// Of the values by the drift.
     MatrixXd explained(const Neighbourhood& by) const {
-        return of_drift.matrixL().solve(terms(by) * values(by).transpose());
+        return of_drift.triangularView<Eigen::Lower>().solve(terms(by) * values(by).transpose());
     }
 
     Solved() = default;
@@ -94,13 +94,14 @@ struct Solved {
         factor << covariance, by.terms.transpose(), by.rest.transpose();
         factor.diagonal().array() += noise;
         if (!eliminate(factor.data(), factor.rows(), k)) return;
-        of_drift.compute(terms(by) * terms(by).transpose());
-        if (of_drift.info() != Eigen::Success) return;
+        const Eigen::LLT<MatrixXd> products(terms(by) * terms(by).transpose());
+        if (products.info() != Eigen::Success) return;
+        of_drift = products.matrixL();
         const auto free = static_cast<double>(k - by.terms.cols());
         variance = (values(by).squaredNorm() - explained(by).squaredNorm()) / free;
         if (!(variance > 0)) return;
         likelihood = -free * std::log(variance) - 2 * factor.diagonal().array().log().sum() -
-                     2 * of_drift.matrixLLT().diagonal().array().log().sum();
+                     2 * of_drift.diagonal().array().log().sum();
     }
 };
 
@@ -181,9 +182,10 @@ LocalProcess::LocalProcess(const MatrixXd& places, const MatrixXd& values) {
     const Solved best = Likeliest(by).solved;
     if (!(best.variance > 0)) return; // nothing but the drift
     const auto lower = best.factor.topRows(k).triangularView<Eigen::Lower>();
-    const MatrixXd drift = best.of_drift.matrixL().solve(best.terms(by)); // orthonormal rows
+    const auto drift_factor = best.of_drift.triangularView<Eigen::Lower>();
+    const MatrixXd drift = drift_factor.solve(best.terms(by)); // orthonormal rows
     const VectorXd to_drift =
-        best.of_drift.matrixL().solve(VectorXd::Unit(p, 0)) - drift * best.sample().transpose();
+        drift_factor.solve(VectorXd::Unit(p, 0)) - drift * best.sample().transpose();
     residual_ = (best.sample() * best.values(by).transpose() +
                  to_drift.transpose() * best.explained(by) + by_drift.row(0))
                     .norm();
