@@ -81,8 +81,7 @@ KnotVector with_seam(const KnotVector& knots, int copies) {
 std::vector<double> knot_places(const Problem& problem, std::size_t axis, Index n) {
     const std::vector<double>& t = problem.parameters.axes[axis];
     const auto m = static_cast<Index>(t.size());
-    std::vector<double> differing = apart(t);
-    if (problem.options.smooth.wanted) return differing;
+    if (problem.options.smooth.wanted) return apart(t);
     const Index spans = n - problem.axes.degree[axis];
     Index run = 1;
     Index longest = 1;
@@ -91,7 +90,7 @@ std::vector<double> knot_places(const Problem& problem, std::size_t axis, Index 
         longest = std::max(longest, run);
     }
     const bool meet = n < m && (longest - 1) * spans >= m;
-    return meet ? differing : t;
+    return meet ? apart(t) : t;
 }
 
 KnotVector axis_knots(const Problem& problem, std::size_t axis) {

@@ -1,6 +1,7 @@
 #include <batten/robust/cloud_lengths.hpp>
 
 #include <batten/core/vectors.hpp>
+#include <batten/samples/samples.hpp>
 
 #include <Eigen/Cholesky>
 
@@ -38,15 +39,11 @@ Eigen::MatrixXd slopes(const Points& points, const Points& places) {
 
 /// Length of the data along a parameter, in parts of its own: of the polyline through the means of
 /// what is in each of its sixteenths, without what changes with the other parameters.
-double length_along(const Points& points, const Points& places, Index axis,
+double length_along(const Points& points, const Points& places, Index axis, const PointSet& box,
                     const Eigen::MatrixXd& slope) {
     constexpr Index parts = 16;
-    double low = places(0, axis);
-    double high = low;
-    for (Index i = 0; i < places.size(); ++i) {
-        low = std::min(low, places(i, axis));
-        high = std::max(high, places(i, axis));
-    }
+    const double low = box(0, axis);
+    const double high = box(1, axis);
     if (!(high > low)) return 0;
     PointSet mean(parts, points.dim());
     std::array<double, parts> count{};
@@ -78,9 +75,10 @@ Points places_in_lengths(const Points& points, const Points& places) {
     if (points.dim() < std::max<Index>(2, places.dim())) return places;
     const Eigen::MatrixXd slope = slopes(points, places);
     if (!slope.allFinite()) return places;
+    const PointSet box = bounding_box(places);
     PointSet result(places);
     for (Index axis = 0; axis < places.dim(); ++axis) {
-        const double length = length_along(points, places, axis, slope);
+        const double length = length_along(points, places, axis, box, slope);
         if (!(length > 0)) return places;
         for (Index i = 0; i < places.size(); ++i) result(i, axis) *= length;
     }

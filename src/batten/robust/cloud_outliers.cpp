@@ -1,5 +1,6 @@
 #include <batten/robust/cloud_outliers.hpp>
 
+#include <batten/core/distinct.hpp>
 #include <batten/robust/judge.hpp>
 #include <batten/robust/scattered_neighbours.hpp>
 #include <batten/samples/noise.hpp>
@@ -82,7 +83,7 @@ class Suspected {
     /// neighbours all around leave no doubt.
     void take_back(std::vector<Index>& left) {
         constexpr int most_rounds = 12;
-        constexpr double all_around = 1.35; // a mean of 18 on one side of a line has 1.5
+        constexpr double all_around = 1.35; // of the noise; 18 evenly around a sample have 1.1
         const UsualResidual usual(normal_);
         for (int round = 0; round < most_rounds; ++round) {
             std::vector<char> back(left.size(), 0);
@@ -116,9 +117,7 @@ class Suspected {
             cloud_.nearest(i, cloud_.process_size() / 2, near);
             for (const auto& [square, beside] : near) result.push_back(beside);
         }
-        std::ranges::sort(result);
-        result.erase(std::unique(result.begin(), result.end()), result.end());
-        return result;
+        return distinct(std::move(result));
     }
 
     static constexpr double none = std::numeric_limits<double>::infinity();

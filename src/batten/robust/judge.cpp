@@ -58,15 +58,31 @@ std::vector<Index> around(const Trusted& trusted, Index sample, std::size_t axis
     return result;
 }
 
-} // namespace
+/// What smooth samples beside one are off if those that predict them reached as far: four times
+/// what most of them are beyond noise, or twice what all, or the first, are on the average, for
+/// noise has none.
+class SmoothResidual {
+  public:
+    /// `largest`: usual residual in units of a sample's noise; `reach`: of the prediction in
+    /// question; `first`: so many that were added first.
+    SmoothResidual(double largest, double reach, std::size_t dim, std::size_t first)
+        : largest_(largest), reach_(reach), first_(first), sum_(dim, 0) {}
 
-UsualResidual::UsualResidual(std::vector<double> residuals) {
-    std::erase_if(residuals, [](double x) { return !std::isfinite(x); });
-    if (residuals.empty()) return;
-    median = quantile(residuals, 0.5);
-    largest = median + 6 * (quantile(residuals, 0.84) - median);
-    largest = std::clamp(largest, 3.9 * median, 7.5 * median);
-}
+    /// A neighbour's prediction, which may not exist, and its way from the neighbour.
+    void add(const Prediction& there, std::span<const double> off);
+    /// Infinite where no neighbour had a prediction.
+    double value() const;
+
+  private:
+    double mean() const;
+
+    double largest_;
+    double reach_;
+    std::size_t first_;
+    std::vector<double> beyond_noise_;
+    std::vector<double> sum_;
+    double mean_of_first_ = 0;
+};
 
 void SmoothResidual::add(const Prediction& there, std::span<const double> off) {
     constexpr double tenth = 0.45; // of the largest one: a tenth of normal residuals are above it
@@ -84,6 +100,16 @@ double SmoothResidual::mean() const {
 double SmoothResidual::value() const {
     if (beyond_noise_.empty()) return std::numeric_limits<double>::infinity(); // nobody knows
     return std::max(4 * median(beyond_noise_), 2 * std::max(mean_of_first_, mean()));
+}
+
+} // namespace
+
+UsualResidual::UsualResidual(std::vector<double> residuals) {
+    std::erase_if(residuals, [](double x) { return !std::isfinite(x); });
+    if (residuals.empty()) return;
+    median = quantile(residuals, 0.5);
+    largest = median + 6 * (quantile(residuals, 0.84) - median);
+    largest = std::clamp(largest, 3.9 * median, 7.5 * median);
 }
 
 double Judge::usual_around(Index sample, std::size_t axis) const {

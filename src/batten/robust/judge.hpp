@@ -20,32 +20,6 @@ struct UsualResidual {
     double ratio() const { return median > 0 ? largest / median : 1; }
 };
 
-/// What smooth samples beside one are off if those that predict them reached as far: four times
-/// what most of them are beyond noise, or twice what all, or the first, are on the average, for
-/// noise has none.
-class SmoothResidual {
-  public:
-    /// `largest`: usual residual in units of a sample's noise; `reach`: of the prediction in
-    /// question; `first`: so many that were added first, 0 for none.
-    SmoothResidual(double largest, double reach, std::size_t dim, std::size_t first = 0)
-        : largest_(largest), reach_(reach), first_(first), sum_(dim, 0) {}
-
-    /// A neighbour's prediction, which may not exist, and its way from the neighbour.
-    void add(const Prediction& there, std::span<const double> off);
-    /// Infinite where no neighbour had a prediction.
-    double value() const;
-
-  private:
-    double mean() const;
-
-    double largest_;
-    double reach_;
-    std::size_t first_;
-    std::vector<double> beyond_noise_;
-    std::vector<double> sum_;
-    double mean_of_first_ = 0;
-};
-
 /// Says whether trusted neighbours explain a sample.
 class Judge {
   public:

@@ -105,6 +105,19 @@ struct Solved {
     }
 };
 
+/// Goes from a place among so many to the next one while that has more; the most there is.
+template <class Value>
+double uphill(std::size_t& at, std::size_t count, int step, double most, Value value) {
+    while (step < 0 ? at > 0 : at + 1 < count) {
+        const std::size_t next = step < 0 ? at - 1 : at + 1;
+        const double there = value(next);
+        if (!(there > most)) break;
+        most = there;
+        at = next;
+    }
+    return most;
+}
+
 /// The likeliest process, sought uphill from the middle of the lengths and noises.
 class Likeliest {
   public:
@@ -120,14 +133,10 @@ class Likeliest {
         std::size_t noise = noises.size() / 2;
         const double at_middle = of_length(smoothness, middle, noise);
         for (const int step : {-1, 1}) {
-            double last = at_middle;
+            std::size_t length = middle;
             std::size_t near = noise;
-            for (std::size_t k = middle; step < 0 ? k > 0 : k + 1 < lengths.size();) {
-                k = step < 0 ? k - 1 : k + 1;
-                const double next = of_length(smoothness, k, near);
-                if (!(next > last)) break;
-                last = next;
-            }
+            uphill(length, lengths.size(), step, at_middle,
+                   [&](std::size_t k) { return of_length(smoothness, k, near); });
         }
     }
 
@@ -137,12 +146,8 @@ class Likeliest {
         double best = take(covariance, noise);
         for (const int step : {1, -1}) {
             const std::size_t before = noise;
-            while (step > 0 ? noise + 1 < noises.size() : noise > 0) {
-                const double next = take(covariance, step > 0 ? noise + 1 : noise - 1);
-                if (!(next > best)) break;
-                best = next;
-                noise = step > 0 ? noise + 1 : noise - 1;
-            }
+            best = uphill(noise, noises.size(), step, best,
+                          [&](std::size_t k) { return take(covariance, k); });
             if (noise != before) break;
         }
         return best;

@@ -1,5 +1,7 @@
 #include <batten/robust/scattered_neighbours.hpp>
 
+#include <batten/samples/samples.hpp>
+
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -25,13 +27,10 @@ Cells cells_of(const Points& places) {
     std::array<double, 3> extent{};
     double volume = 1;
     int extended = 0;
+    const PointSet box = bounding_box(places);
     for (Index d = 0; d < places.dim(); ++d) {
-        double low = places(0, d);
-        double high = low;
-        for (Index i = 0; i < places.size(); ++i) {
-            low = std::min(low, places(i, d));
-            high = std::max(high, places(i, d));
-        }
+        const double low = box(0, d);
+        const double high = box(1, d);
         result.low[static_cast<std::size_t>(d)] = low;
         extent[static_cast<std::size_t>(d)] = high - low;
         if (high > low) {
@@ -48,26 +47,33 @@ Cells cells_of(const Points& places) {
     return result;
 }
 
+constexpr int parabola_terms(int axes) {
+    return 1 + axes + axes * (axes + 1) / 2;
+}
+
+constexpr Index per_term = 3; ///< neighbours that make a parabola
+
 /// What least squares by a polynomial of second degree over so many axes miss of a sample.
 template <int axes>
 Prediction by_parabola(const Points& points, const Points& places, Index sample,
                        const TrustedCloud::Neighbours& neighbours) {
-    constexpr int terms = 1 + axes + axes * (axes + 1) / 2;
+    constexpr int terms = parabola_terms(axes);
     using Terms = Eigen::Matrix<double, terms, 1>;
-    if (std::ssize(neighbours) < 3 * terms) return {};
+    if (std::ssize(neighbours) < per_term * terms) return {};
     const double scale = 1 / std::sqrt(neighbours.back().square);
     if (!std::isfinite(scale)) return {};
-    Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
-    for (const auto& [square, i] : neighbours) {
-        std::array<double, axes> x;
-        for (int d = 0; d < axes; ++d)
-            x[static_cast<std::size_t>(d)] = scale * (places(i, d) - places(sample, d));
+    const auto terms_at = [&](Index i) {
         Terms value;
         value(0) = 1;
-        int t = 1;
-        for (int d = 0; d < axes; ++d) value(t++) = x[static_cast<std::size_t>(d)];
-        for (std::size_t d = 0; d < axes; ++d)
-            for (std::size_t e = d; e < axes; ++e) value(t++) = x[d] * x[e];
+        for (int d = 0; d < axes; ++d) value(1 + d) = scale * (places(i, d) - places(sample, d));
+        int t = 1 + axes;
+        for (int d = 0; d < axes; ++d)
+            for (int e = d; e < axes; ++e) value(t++) = value(1 + d) * value(1 + e);
+        return value;
+    };
+    Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
+    for (const auto& [square, i] : neighbours) {
+        const Terms value = terms_at(i);
         normal.noalias() += value * value.transpose();
     }
     const Eigen::LDLT<Eigen::Matrix<double, terms, terms>> factors(normal);
@@ -76,18 +82,8 @@ Prediction by_parabola(const Points& points, const Points& places, Index sample,
     double sum_of_squares = 0;
     for (Index k = 0; k < points.dim(); ++k) {
         double off = 0;
-        for (const auto& [square, i] : neighbours) {
-            std::array<double, axes> x;
-            for (int d = 0; d < axes; ++d)
-                x[static_cast<std::size_t>(d)] = scale * (places(i, d) - places(sample, d));
-            double weight = at_sample(0);
-            int t = 1;
-            for (int d = 0; d < axes; ++d)
-                weight += at_sample(t++) * x[static_cast<std::size_t>(d)];
-            for (std::size_t d = 0; d < axes; ++d)
-                for (std::size_t e = d; e < axes; ++e) weight += at_sample(t++) * x[d] * x[e];
-            off += weight * (points(i, k) - points(sample, k));
-        }
+        for (const auto& [square, i] : neighbours)
+            off += at_sample.dot(terms_at(i)) * (points(i, k) - points(sample, k));
         sum_of_squares += off * off;
     }
     return {std::sqrt(sum_of_squares), std::sqrt(1 + at_sample(0))};
@@ -162,7 +158,6 @@ void TrustedCloud::nearest(Index sample, Index count, Neighbours& found) const {
             high[d] = std::min(cells_.length(d) - 1, here[d] + ring);
         }
         const double all_within = clear(sample, low, high);
-        // of evenly spread samples as many are nearer as are asked for, where this is larger
         found.clear();
         for (Index a = low[0]; a <= high[0]; ++a)
             for (Index b = low[1]; b <= high[1]; ++b) {
@@ -195,17 +190,11 @@ void TrustedCloud::nearest(Index sample, Index count, Neighbours& found) const {
 }
 
 Prediction TrustedCloud::predict(Index sample, Neighbours& found) const {
-    switch (places_.dim()) {
-    case 1:
-        nearest(sample, 9, found);
-        return by_parabola<1>(points_, places_, sample, found);
-    case 2:
-        nearest(sample, 18, found);
-        return by_parabola<2>(points_, places_, sample, found);
-    default:
-        nearest(sample, 30, found);
-        return by_parabola<3>(points_, places_, sample, found);
-    }
+    const auto axes = static_cast<int>(places_.dim());
+    nearest(sample, per_term * parabola_terms(axes), found);
+    if (axes == 1) return by_parabola<1>(points_, places_, sample, found);
+    if (axes == 2) return by_parabola<2>(points_, places_, sample, found);
+    return by_parabola<3>(points_, places_, sample, found);
 }
 
 LocalProcess TrustedCloud::process(Index sample, const Neighbours& neighbours) const {

@@ -1,5 +1,7 @@
 #include <batten/system/roughness.hpp>
 
+#include <batten/samples/samples.hpp>
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -74,23 +76,17 @@ BandedMatrix unit_roughness_matrix(const KnotVector& knots, int order) {
 }
 
 bool determine_smoothest(const Points& places, int order) {
-    std::vector<double> low(places[0].begin(), places[0].end());
-    std::vector<double> high = low;
-    for (Index i = 0; i < places.size(); ++i)
-        for (std::size_t d = 0; d < low.size(); ++d) {
-            low[d] = std::min(low[d], places[i][d]);
-            high[d] = std::max(high[d], places[i][d]);
-        }
+    const PointSet box = bounding_box(places);
     Index terms = 1;
-    for (std::size_t d = 0; d < low.size(); ++d) terms *= order;
+    for (Index d = 0; d < places.dim(); ++d) terms *= order;
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(terms, terms);
     Eigen::VectorXd value(terms);
     for (Index i = 0; i < places.size(); ++i) {
         value(0) = 1;
         Index count = 1;
-        for (std::size_t d = 0; d < low.size(); ++d) {
-            const double half = (high[d] - low[d]) / 2;
-            const double x = half > 0 ? (places[i][d] - low[d]) / half - 1 : 0;
+        for (Index d = 0; d < places.dim(); ++d) {
+            const double half = (box(1, d) - box(0, d)) / 2;
+            const double x = half > 0 ? (places(i, d) - box(0, d)) / half - 1 : 0;
             const std::array<double, 3> legendre{1, x, 1.5 * x * x - 0.5};
             for (Index k = count; k < order * count; ++k)
                 value(k) = value(k % count) * legendre[static_cast<std::size_t>(k / count)];
