@@ -210,6 +210,53 @@ def long_cloud(seed):
     return np.column_stack([place, heights]), planted.tolist(), sigma, ["-n", "12x12", "--project", "xy"]
 
 
+def places_of_any_kind(rng, kind):
+    """About 900 places over [0, 1] x [0, 1]: at random, a lattice in any order, one that is shaken, or along lines."""
+    if kind in ("lattice", "shaken"):
+        line = np.arange(30) / 29
+        place = rng.permutation(np.array([(u, v) for u in line for v in line]))
+        return place if kind == "lattice" else place + 0.3 / 30 * rng.uniform(-1, 1, place.shape)
+    place = rng.random((900, 2))
+    if kind == "lines":
+        place[:, 1] = np.floor(12 * place[:, 1]) / 12 + 0.002 * rng.normal(size=900)
+    return place
+
+
+def cloud_in_units(seed):
+    """Any kind of places, one coordinate in a unit of its own."""
+    rng = np.random.default_rng(seed)
+    place = places_of_any_kind(rng, ("random", "lattice", "shaken", "lines")[seed % 4])
+    u, v, sigma = *place.T, 0.01
+    heights = (np.sin(5 * u), np.sin(5 * u) * np.cos(4 * v), np.hypot(u - 0.3, v + 0.2))[seed % 3] + sigma * rng.normal(size=len(place))
+    planted = np.sort(rng.choice(len(place), 4, replace=False))
+    heights[planted] += sigma * 10 ** rng.uniform(1.4, 3, 4) * rng.choice([-1, 1], 4)
+    unit = (1e-3, 0.03, 1, 10, 100, 1000)[seed % 6]
+    return np.column_stack([unit * u, v, heights]), planted.tolist(), sigma, ["-n", "10x10", "--project", "xy"]
+
+
+def small_cloud(seed):
+    rng = np.random.default_rng(seed)
+    count, sigma = (15, 20, 30, 60)[seed % 4], 0.001
+    place = rng.random((count, 2))
+    heights = place @ [1, 2] + sigma * rng.normal(size=count)
+    outlier = int(rng.integers(count))
+    heights[outlier] += sigma * 10 ** rng.uniform(1.5, 3)
+    return np.column_stack([place, heights]), [outlier], sigma, ["-n", "3x3", "--degree", 2, "--project", "xy"]
+
+
+def cloud_of_repeated_places(seed):
+    """Each place is measured many times, or half of all samples are at one place."""
+    rng = np.random.default_rng(seed)
+    place = np.repeat(rng.random((200, 2)), 40, axis=0) if seed % 2 else rng.random((4000, 2))
+    if seed % 2 == 0:
+        place[:2000] = place[0]
+    place, sigma = rng.permutation(place), 0.01
+    heights = np.sin(5 * place[:, 0]) * np.cos(4 * place[:, 1]) + sigma * rng.normal(size=len(place))
+    planted = np.sort(rng.choice(len(place), 5, replace=False))
+    heights[planted] += 0.5 * rng.choice([-1, 1], 5)
+    return np.column_stack([place, heights]), planted.tolist(), sigma, ["-n", "8x8", "--project", "xy"]
+
+
 class Outliers(InFolder):
     def set_aside(self, points, *arguments):
         """The samples that are set aside; points are an array or a file."""
@@ -251,6 +298,16 @@ class Outliers(InFolder):
     def test_of_long_clouds(self):
         """What is near is near along either axis, though parameters run from 0 to 1 along both."""
         self.check(long_cloud, 0.97)
+
+    def test_of_clouds_in_any_unit(self):
+        """Lattices and scanned lines, too: the samples themselves say what is near."""
+        self.check(cloud_in_units, 0.97)
+
+    def test_of_small_clouds(self):
+        self.check(small_cloud, 0.97)
+
+    def test_of_clouds_of_repeated_places(self):
+        self.check(cloud_of_repeated_places, 0.97)
 
     def test_where_there_are_none(self):
         for generated in (noisy_curve, noisy_heights, noisy_cloud):

@@ -3,7 +3,7 @@
 #include <batten/core/vector_clones.hpp>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include <Eigen/SVD>
 
 #include <array>
 #include <cmath>
@@ -167,32 +167,36 @@ class Likeliest {
 
 LocalProcess::LocalProcess(const MatrixXd& places, const MatrixXd& values) {
     const Index k = places.rows();
-    const Index p = places.cols() + 1;
+    const Index terms = places.cols() + 1;
     const double radius = places.rowwise().norm().maxCoeff();
-    if (!(radius > 0) || k < 2 * p) return;
-    Neighbourhood by{MatrixXd(k + 1, k), MatrixXd(k, p), {}};
+    if (!(radius > 0) || k < 2 * terms) return;
+    Neighbourhood by{MatrixXd(k + 1, k), MatrixXd(k, terms), {}};
     for (Index j = 0; j < k; ++j) {
         for (Index i = j; i < k; ++i)
             by.distances(i, j) = (places.row(i) - places.row(j)).norm() / radius;
         by.distances(k, j) = places.row(j).norm() / radius;
     }
     by.terms << VectorXd::Ones(k), places / radius;
-    const Eigen::ColPivHouseholderQR<MatrixXd> straight(by.terms);
-    if (straight.rank() < p) return;
-    const MatrixXd by_drift = straight.solve(values);
+    Eigen::JacobiSVD<MatrixXd> straight(by.terms, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    straight.setThreshold(1e-8);
+    const Index p = straight.rank(); // fewer where they are on a line or plane
+    const MatrixXd directions = straight.matrixV().leftCols(p);
+    const VectorXd at_sample = directions.row(0).transpose();
+    if (at_sample.norm() < 1 - 1e-8) return; // which the sample is not on
+    by.terms *= directions;
+    const MatrixXd by_drift = directions.transpose() * straight.solve(values);
     by.rest = values - by.terms * by_drift; // for the sake of rounding
     exists_ = true;
-    residual_ = by_drift.row(0).norm();
+    residual_ = (at_sample.transpose() * by_drift).norm();
     of_neighbours_.setZero(k);
     const Solved best = Likeliest(by).solved;
     if (!(best.variance > 0)) return; // nothing but the drift
     const auto lower = best.factor.topRows(k).triangularView<Eigen::Lower>();
     const auto drift_factor = best.of_drift.triangularView<Eigen::Lower>();
     const MatrixXd drift = drift_factor.solve(best.terms(by)); // orthonormal rows
-    const VectorXd to_drift =
-        drift_factor.solve(VectorXd::Unit(p, 0)) - drift * best.sample().transpose();
+    const VectorXd to_drift = drift_factor.solve(at_sample) - drift * best.sample().transpose();
     residual_ = (best.sample() * best.values(by).transpose() +
-                 to_drift.transpose() * best.explained(by) + by_drift.row(0))
+                 to_drift.transpose() * best.explained(by) + at_sample.transpose() * by_drift)
                     .norm();
     deviation_ = std::sqrt(best.variance *
                            (1 + best.noise - best.sample().squaredNorm() + to_drift.squaredNorm()));
@@ -202,6 +206,11 @@ LocalProcess::LocalProcess(const MatrixXd& places, const MatrixXd& values) {
     const MatrixXd off = r.transpose() * best.values(by).transpose();
     for (Index j = 0; j < k; ++j)
         of_neighbours_(j) = off.row(j).norm() / (r.col(j).norm() * std::sqrt(best.variance));
+}
+
+double LocalProcess::normal() const {
+    if (deviation_ > 0) return residual_ / deviation_;
+    return residual_ > 0 ? std::numeric_limits<double>::infinity() : 0;
 }
 
 } // namespace batten

@@ -19,6 +19,8 @@ class LocalProcess {
     double residual() const { return residual_; }
     /// Standard deviation of that, 0 where the neighbours have neither noise nor a bend.
     double deviation() const { return deviation_; }
+    /// The residual in its standard deviations.
+    double normal() const;
     /// Residuals of the neighbours, each by the process without it, in its standard deviations.
     const Eigen::VectorXd& of_neighbours() const { return of_neighbours_; }
 

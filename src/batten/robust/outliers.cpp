@@ -1,7 +1,6 @@
 #include <batten/robust/outliers.hpp>
 
 #include <batten/problem/subset.hpp>
-#include <batten/robust/cloud_lengths.hpp>
 #include <batten/robust/cloud_outliers.hpp>
 #include <batten/robust/neighbour_outliers.hpp>
 #include <batten/robust/sequence_outliers.hpp>
@@ -77,10 +76,8 @@ WithoutOutliers without_outliers(const Problem& problem) {
         problem.kind == SampleKind::sequence
             ? sequence_outliers(problem.samples.points, problem.axes.closures[0],
                                 least_residuals(problem), known_places(problem, 0))
-            : cloud_outliers(
-                  problem.samples.points,
-                  places_in_lengths(problem.samples.points, problem.parameters.scattered),
-                  least_residuals(problem));
+            : cloud_outliers(problem.samples.points, problem.parameters.scattered,
+                             least_residuals(problem));
     if (outliers.empty()) return {problem, {}};
     const Subset kept = Subset::without(outliers, problem.samples.size());
     return {problem_of(kept.of(problem.samples), kept.of(problem.options)), std::move(outliers)};
