@@ -247,9 +247,9 @@ def small_cloud(seed):
 def cloud_of_repeated_places(seed):
     """Each place is measured many times, or half of all samples are at one place."""
     rng = np.random.default_rng(seed)
-    place = np.repeat(rng.random((200, 2)), 40, axis=0) if seed % 2 else rng.random((4000, 2))
+    place = np.repeat(rng.random((100, 2)), 20, axis=0) if seed % 2 else rng.random((2000, 2))
     if seed % 2 == 0:
-        place[:2000] = place[0]
+        place[:1000] = place[0]
     place, sigma = rng.permutation(place), 0.01
     heights = np.sin(5 * place[:, 0]) * np.cos(4 * place[:, 1]) + sigma * rng.normal(size=len(place))
     planted = np.sort(rng.choice(len(place), 5, replace=False))
