@@ -254,7 +254,8 @@ class Smoothing(InFolder):
                         self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
                         self.assertRegex(done.stderr, "the largest factor that method .* can tell from an infinite one here is")
                         largest = 0.9 * float(done.stderr.split()[-1])
-                        self.assertEqual(smooth(largest).returncode, 0, smooth(largest).stderr)
+                        # an iteration may say that it did not come to the minimum there
+                        self.assertIn(smooth(largest).returncode, (0, 4) if method == "cg" else (0,), smooth(largest).stderr)
 
     def test_places_on_a_line_determine_no_surface(self):
         t = np.random.default_rng(1).random(230)
@@ -276,6 +277,18 @@ class Smoothing(InFolder):
         self.assertEqual(short.returncode, 4, short.stdout)
         self.assertIn("missed      relative gradient", short.stdout)
         self.assertEqual(fit("-m", "cg", "--max-iterations", "50").returncode, 0)  # as many as were asked for
+
+    def test_an_iteration_whose_gradient_says_too_little_missed_the_minimum(self):
+        rng = np.random.default_rng(495)
+        t = np.sort(rng.random(40))
+        np.save(self.folder / "q.npy", np.column_stack([3 * t, np.sin(7 * t) + 0.05 * rng.normal(size=40)]))
+        np.save(self.folder / "u.npy", t)
+        fit = lambda size, method: self.run_batten("fit", "q.npy", "--parameters", "u.npy", "-n", size, "--degree", "5", "--smooth-order", "3",
+                                                   "--smooth", "1e-8", "-m", method)
+        self.assertEqual([fit(12, "cg").returncode, fit(30, "direct").returncode], [0, 0])
+        short = fit(30, "cg")
+        self.assertEqual(short.returncode, 4, short.stdout)
+        self.assertIn("missed      least functional: stated 1e-08", short.stdout)
 
     def test_no_unit_counts(self):
         rng = np.random.default_rng(5)

@@ -160,19 +160,28 @@ SampleRows sample_rows(const Equations& equations, const Problem& problem) {
     return {problem.samples, problem.parameters, equations.lambda, problem.options.smooth.order};
 }
 
-/// Standard deviation of a sample of mean weight that a spline of such freedom leaves.
-double noise_of(const Spline& spline, const Problem& problem, double freedom) {
+struct SquaredResiduals {
+    double weighted = 0; ///< their sum
+    double weights = 0;  ///< theirs
+};
+
+SquaredResiduals squared_residuals(const Spline& spline, const Problem& problem) {
     const std::vector<double> away =
         parametric_deviations(spline, problem.samples, problem.parameters);
     const std::vector<double>& weights = problem.samples.weights;
-    double squares = 0;
-    double total = 0;
+    SquaredResiduals sum;
     for (std::size_t i = 0; i < away.size(); ++i) {
         const double weight = weights.empty() ? 1 : weights[i];
-        squares += weight * away[i] * away[i];
-        total += weight;
+        sum.weighted += weight * away[i] * away[i];
+        sum.weights += weight;
     }
-    return noise_left(squares / total, static_cast<double>(away.size()), freedom);
+    return sum;
+}
+
+/// Standard deviation of a sample of mean weight that a spline of such freedom leaves.
+double noise_of(const Spline& spline, const Problem& problem, double freedom) {
+    const auto [squares, total] = squared_residuals(spline, problem);
+    return noise_left(squares / total, static_cast<double>(problem.samples.size()), freedom);
 }
 
 Course answered(const Equations& equations, const Problem& problem, std::string_view method) {
@@ -183,6 +192,40 @@ Course answered(const Equations& equations, const Problem& problem, std::string_
                   {}};
     course.report.gradient_norm = frobenius_norm(equations.system->gradient(course.control));
     return course;
+}
+
+/// By how much the functional is above its least value, in parts of it; -1 where that is not to be
+/// had for the price of an iteration: a cloud's. `samples`: the system without roughness.
+double above_minimum(const Equations& equations, const NormalSystem& samples,
+                     const Problem& problem, const PointSet& control) {
+    const NormalSystem& system = *equations.system;
+    if (equations.axes.size() > 1 && system.factors().empty()) return -1;
+    PointSet least;
+    try {
+        least = solve_direct(system, sample_rows(equations, problem), equations.held);
+    } catch (const SolverError&) {
+        return -1;
+    }
+    PointSet image(least);
+    const auto energy = [&](const NormalSystem& of, const PointSet& x) {
+        of.apply(x, image);
+        return inner_product(x, image);
+    };
+    const double roughness = energy(system, least) - energy(samples, least);
+    const Spline spline = Spline::from_free(equations.axes, uncentred(least, system.centre()));
+    const double functional =
+        squared_residuals(spline, problem).weighted + std::max(0.0, roughness);
+    PointSet off(control);
+    add_scaled(off, -1, least);
+    return functional > 0 ? energy(system, off) / functional : 0;
+}
+
+/// Whether an iteration ended as it does when nothing else is asked for.
+bool to_the_end(const FitReport& report, const Problem& problem) {
+    return report.termination == Termination::converged &&
+           problem.options.stop.relative_gradient == StopRule().relative_gradient &&
+           problem.options.stop.gradient == 0 && problem.options.stop.deviation == 0 &&
+           !problem.options.hold.equalities() && problem.options.hold.preserve == Preserve::nothing;
 }
 
 } // namespace
@@ -210,6 +253,8 @@ Fitted fit_least_squares(const Problem& problem, std::string_view method) {
     FitReport& report = course.report;
     report.method = method;
     report.smoothing = smoothing.lambda;
+    if (samples && method != "direct" && to_the_end(report, problem))
+        report.above_minimum = above_minimum(equations, *samples, problem, course.control);
     report.seconds = {{"assemble", assemble_seconds}, {"solve", watch.lap()}};
     if (problem.options.smooth.wanted)
         report.seconds.insert(report.seconds.begin() + 1, {"smoothing", smoothing_seconds});

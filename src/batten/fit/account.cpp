@@ -71,6 +71,8 @@ std::vector<Goal> judged(const FitReport& report, const Problem& problem) {
     if ((locked || unfinished) && stop.relative_gradient > 0)
         state("relative gradient", stop.relative_gradient,
               report.gradient_norm / report.first_gradient_norm);
+    constexpr double minimal = 1e-8;
+    if (report.above_minimum > minimal) state("least functional", minimal, report.above_minimum);
     if (report.interpolated > 0) state("exact samples", least, report.constraint_error);
     if (report.tangents > 0) state("tangents", exactness, report.tangent_error);
     if (report.boundaries > 0) state("boundaries", least, report.boundary_error);

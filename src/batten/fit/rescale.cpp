@@ -82,7 +82,7 @@ FitResult rescaled(FitResult result, double factor) {
     scale(report.settings, factor);
     for (Goal& goal : report.goals)
         if (goal.name != "inflections" && goal.name != "tangents" &&
-            goal.name != "relative gradient") {
+            goal.name != "relative gradient" && goal.name != "least functional") {
             goal.stated *= factor;
             goal.reached *= factor;
         }

@@ -51,7 +51,9 @@ struct FitReport {
     double predicted_rate = 0; ///< 0 when the theory gives none
     double observed_rate = 0;  ///< 0 when the run was too short
     Deviation deviation;
-    Index interpolated = 0;      ///< samples that must be hit exactly
+    double above_minimum = -1; ///< by how much a smooth curve's or grid's iteration ended above the
+                               ///< least functional, in parts of it; -1: not measured
+    Index interpolated = 0;    ///< samples that must be hit exactly
     double constraint_error = 0; ///< largest distance from one of them
     Index tangents = 0;          ///< directions and derivatives that must hold
     double tangent_error = 0;    ///< by how much they are missed, over the data's size; infinite:
