@@ -41,9 +41,7 @@ void judge(const TrustedCloud& cloud, double least, Accused& accused) {
     accused.limit = std::numeric_limits<double>::infinity();
     if (!process.exists()) return;
     const double worst = process.of_neighbours().maxCoeff();
-    const auto free = static_cast<double>(std::ssize(accused.neighbours) - cloud.axes() - 1);
-    const double few = 1 + 24 / (free * free); // know less of the deviation
-    accused.limit = std::max(least, few * std::max(usual, beside * worst) * process.deviation());
+    accused.limit = std::max(least, std::max(usual, beside * worst) * process.deviation());
     accused.part = process.residual() / accused.limit;
 }
 
@@ -73,6 +71,20 @@ void take_back(TrustedCloud& cloud, const std::vector<double>& least, std::vecto
         });
     }
     std::erase_if(left, [](const Accused& a) { return !std::isfinite(a.limit); });
+}
+
+/// Trusts the least of them, too, until they are no more than an eighth of a small cloud: some of
+/// its samples agree by chance.
+void take_back_of_few(TrustedCloud& cloud, const std::vector<double>& least,
+                      std::vector<Accused>& left) {
+    constexpr Index few = 100;
+    take_back(cloud, least, left);
+    while (cloud.size() < few && std::ssize(left) > std::max<Index>(1, cloud.size() / 8)) {
+        const auto weakest = std::ranges::min_element(left, {}, &Accused::part);
+        cloud.trust(weakest->sample, true);
+        left.erase(weakest);
+        take_back(cloud, least, left);
+    }
 }
 
 /// Those that have no more than three others among their eight nearest, nor one that has more
@@ -112,7 +124,7 @@ std::vector<Index> cloud_outliers(const Points& points, const Points& places,
     std::vector<Accused> left;
     for (Index i : leave_out_suspects(cloud, least)) left.push_back({i, {}});
     if (2 * std::ssize(left) > cloud.size()) return {}; // nobody to ask
-    take_back(cloud, least, left);
+    take_back_of_few(cloud, least, left);
     return alone(cloud, left);
 }
 

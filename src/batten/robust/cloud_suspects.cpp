@@ -135,20 +135,34 @@ struct Centre {
     std::ptrdiff_t nearer_half() const { return std::ssize(neighbours) / 2; }
 };
 
-/// Some of these samples, so that each is one or among the nearer half of one's neighbours.
+/// Some of these samples, so that each is one or among the nearer half of one's neighbours; of a
+/// small cloud all, for what a process was made with can be off by so many deviations only.
 std::vector<Centre> cover(const TrustedCloud& cloud, const std::vector<Index>& samples) {
+    constexpr Index small = 400;
     std::vector<Centre> result;
     std::vector<char> covered(static_cast<std::size_t>(cloud.size()), 0);
     for (Index i : samples) {
         if (covered[static_cast<std::size_t>(i)] || !cloud.trusts(i)) continue;
         Centre centre{i, {}};
         cloud.nearest(i, cloud.process_size(), centre.neighbours);
-        for (const auto& [square, beside] :
-             std::span(centre.neighbours).first(static_cast<std::size_t>(centre.nearer_half())))
-            covered[static_cast<std::size_t>(beside)] = 1;
+        if (cloud.size() > small)
+            for (const auto& [square, beside] :
+                 std::span(centre.neighbours).first(static_cast<std::size_t>(centre.nearer_half())))
+                covered[static_cast<std::size_t>(beside)] = 1;
         result.push_back(std::move(centre));
     }
     return result;
+}
+
+/// How far a centre is off in standard deviations without its nearest two, which may be outliers
+/// like it.
+double without_nearest(const TrustedCloud& cloud, const Centre& centre) {
+    constexpr Index others = 2; // in a run
+    const Neighbours rest(centre.neighbours.begin() +
+                              std::min(others, std::ssize(centre.neighbours)),
+                          centre.neighbours.end());
+    const LocalProcess process = cloud.process(centre.sample, rest);
+    return process.exists() ? process.normal() : 0;
 }
 
 /// What is far off by the process around a centre: itself or of the nearer half.
@@ -158,9 +172,10 @@ std::vector<Index> far_off(const TrustedCloud& cloud, const Centre& centre) {
     const LocalProcess process = cloud.process(centre.sample, centre.neighbours);
     if (!process.exists()) return {};
     const auto beside = process.of_neighbours().head(centre.nearer_half());
-    const double limit = std::max(usual, part * std::max(process.normal(), beside.maxCoeff()));
+    const double own = std::max(process.normal(), without_nearest(cloud, centre));
+    const double limit = std::max(usual, part * std::max(own, beside.maxCoeff()));
     std::vector<Index> result;
-    if (process.normal() > limit) result.push_back(centre.sample);
+    if (own > limit) result.push_back(centre.sample);
     for (Index j = 0; j < beside.size(); ++j)
         if (beside(j) > limit)
             result.push_back(centre.neighbours[static_cast<std::size_t>(j)].place);

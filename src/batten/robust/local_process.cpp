@@ -198,14 +198,16 @@ LocalProcess::LocalProcess(const MatrixXd& places, const MatrixXd& values) {
     residual_ = (best.sample() * best.values(by).transpose() +
                  to_drift.transpose() * best.explained(by) + at_sample.transpose() * by_drift)
                     .norm();
-    deviation_ = std::sqrt(best.variance *
+    const auto free = static_cast<double>(k - p);
+    const double variance = best.variance * std::pow(1 + 24 / (free * free), 2);
+    deviation_ = std::sqrt(variance *
                            (1 + best.noise - best.sample().squaredNorm() + to_drift.squaredNorm()));
     // the inverse of the covariance without the drift is R^T R
     MatrixXd r = lower.solve(MatrixXd::Identity(k, k));
     r -= drift.transpose() * (drift * r);
     const MatrixXd off = r.transpose() * best.values(by).transpose();
     for (Index j = 0; j < k; ++j)
-        of_neighbours_(j) = off.row(j).norm() / (r.col(j).norm() * std::sqrt(best.variance));
+        of_neighbours_(j) = off.row(j).norm() / (r.col(j).norm() * std::sqrt(variance));
 }
 
 double LocalProcess::normal() const {

@@ -17,7 +17,8 @@ class LocalProcess {
     bool exists() const { return exists_; }
     /// How far the sample is from where the process has it.
     double residual() const { return residual_; }
-    /// Standard deviation of that, 0 where the neighbours have neither noise nor a bend.
+    /// Standard deviation of that, 0 where the neighbours have neither noise nor a bend; the more
+    /// the fewer they are, for few know less of it.
     double deviation() const { return deviation_; }
     /// The residual in its standard deviations.
     double normal() const;
