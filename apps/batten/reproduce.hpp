@@ -30,4 +30,7 @@ struct Paper {
 
 std::span<const Paper> papers();
 
+/// Peng and Li's experiments with SaLSPIA and what they compare it with.
+std::vector<Reproduced> peng_li(Drawings& drawings);
+
 } // namespace batten::command

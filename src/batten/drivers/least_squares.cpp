@@ -133,11 +133,16 @@ std::unique_ptr<Method> iteration_for(const Equations& equations, const Problem&
     const Settings& s = problem.options.method.settings;
     const NormalSystem& system = *equations.system;
     if (method != "clspia") return make_method(method, system, s);
+    const MethodEntry& entry = method_entry("clspia");
+    if (problem.options.hold.preserve != Preserve::nothing && setting(entry, s, "warm_start") > 0)
+        throw InvalidInput("clspia: warm_start moves the control points before a shape is kept; "
+                           "leave one of them out");
     const Constraints exact = with_best_lengths(system, equations.held.independent(system.size()));
     return std::make_unique<Clspia>(
         system, exact, exactness * problem.size,
         ClspiaSettings{setting(s, "mu"), setting(s, "mu_1"), setting(s, "inner_tolerance"),
-                       setting(method_entry("clspia"), s, "eigenvalue_tolerance")});
+                       setting(entry, s, "eigenvalue_tolerance"), setting(entry, s, "lambda"),
+                       static_cast<Index>(setting(entry, s, "warm_start"))});
 }
 
 Course iterated_from_start(const Equations& equations, const Problem& problem,
@@ -194,12 +199,13 @@ Course answered(const Equations& equations, const Problem& problem, std::string_
     return course;
 }
 
-/// By how much the functional is above its least value, in parts of it; -1 where that is not to be
-/// had for the price of an iteration: a cloud's. `samples`: the system without roughness.
+/// By how much the functional is above its least value, in parts of it; -1 where that would cost
+/// more than the iteration. `samples`: the system without roughness.
 double above_minimum(const Equations& equations, const NormalSystem& samples,
                      const Problem& problem, const PointSet& control) {
     const NormalSystem& system = *equations.system;
-    if (equations.axes.size() > 1 && system.factors().empty()) return -1;
+    const Index most = equations.axes.size() > 2 ? 4000 : 20000; // by nested dissection
+    if (equations.axes.size() > 1 && system.factors().empty() && system.size() > most) return -1;
     PointSet least;
     try {
         least = solve_direct(system, sample_rows(equations, problem), equations.held);

@@ -52,6 +52,10 @@ std::vector<Driver> table() {
         iteration("chebyshev"),
         iteration("nesterov"),
         iteration("barzilai-borwein"),
+        iteration("salspia"),
+        iteration("alspia"),
+        iteration("nmlspia"),
+        iteration("lin2018"),
         {method_entry("search"), searched | held | curves | Requests{corners},
          searched | held | boundary, (searched | held) - rules, fit_by_search},
     };

@@ -23,7 +23,7 @@ Spline scaled(const Spline& spline, double factor) {
 
 /// Settings that are lengths.
 void scale(Settings& settings, double factor) {
-    for (const char* name : {"t_c", "inner_tolerance"})
+    for (const char* name : {"t_c", "inner_tolerance", "lambda"})
         if (const auto found = settings.find(name); found != settings.end())
             found->second *= factor;
 }

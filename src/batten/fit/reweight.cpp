@@ -7,13 +7,14 @@ namespace batten {
 
 namespace {
 
-/// Settings that are steps of gradients, and the inverse of one.
+/// Settings that are steps of gradients, the inverse of one, or a gradient.
 void divide_steps(Settings& settings, std::string_view method, double unit) {
     const bool multipliers = method == "clspia"; // these are gradients themselves
     for (const auto& [name, as_gradients] :
          {std::pair{"mu", multipliers}, std::pair{"mu_1", true}, std::pair{"nu", false}})
         if (const auto found = settings.find(name); found != settings.end())
             found->second = as_gradients ? found->second / unit : found->second * unit;
+    if (const auto found = settings.find("lambda"); found != settings.end()) found->second /= unit;
 }
 
 } // namespace

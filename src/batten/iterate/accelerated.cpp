@@ -25,7 +25,7 @@ void scale(PointSet& x, double factor) {
 Chebyshev::Chebyshev(const NormalSystem& system, double eigenvalue_tolerance)
     : system_(system), eigenvalue_tolerance_(eigenvalue_tolerance) {}
 
-void Chebyshev::start(const PointSet&) {
+void Chebyshev::start(PointSet&) {
     check_setting("chebyshev", "eigenvalue_tolerance", eigenvalue_tolerance_);
     const ExtremeEigenvalues e = widened(system_, eigenvalue_tolerance_);
     centre_ = (e.largest + e.smallest) / 2;
@@ -56,11 +56,11 @@ const PointSet& Chebyshev::propose(const PointSet& control) {
     return moves_;
 }
 
-Nesterov::Nesterov(const NormalSystem& system, double eigenvalue_tolerance)
-    : system_(system), eigenvalue_tolerance_(eigenvalue_tolerance) {}
+Nesterov::Nesterov(const NormalSystem& system, double eigenvalue_tolerance, std::string_view name)
+    : system_(system), eigenvalue_tolerance_(eigenvalue_tolerance), name_(name) {}
 
-void Nesterov::start(const PointSet&) {
-    check_setting("nesterov", "eigenvalue_tolerance", eigenvalue_tolerance_);
+void Nesterov::start(PointSet&) {
+    check_setting(name_, "eigenvalue_tolerance", eigenvalue_tolerance_);
     const ExtremeEigenvalues e = widened(system_, eigenvalue_tolerance_);
     step_ = 1 / e.largest;
     const double root = std::sqrt(e.largest / e.smallest);
@@ -86,7 +86,7 @@ const PointSet& Nesterov::propose(const PointSet& control) {
 BarzilaiBorwein::BarzilaiBorwein(const NormalSystem& system, int memory)
     : system_(system), memory_(memory) {}
 
-void BarzilaiBorwein::start(const PointSet&) {
+void BarzilaiBorwein::start(PointSet&) {
     check_setting("barzilai-borwein", "memory", memory_);
     image_ = PointSet(system_.size(), system_.dim());
     moves_image_ = image_;

@@ -14,7 +14,7 @@ class Chebyshev : public Method {
     explicit Chebyshev(const NormalSystem& system,
                        double eigenvalue_tolerance = default_eigenvalue_tolerance);
     std::string_view name() const override { return "chebyshev"; }
-    void start(const PointSet& control) override;
+    void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override { last_ = moves; }
     double gradient_norm() const override { return norm_; }
@@ -35,13 +35,15 @@ class Chebyshev : public Method {
     PointSet last_;
 };
 
-/// LSPIA with Nesterov's momentum for strongly convex functions [Nesterov2004, section 2.2].
+/// LSPIA with Nesterov's momentum for strongly convex functions [Nesterov2004, section 2.2];
+/// NmLSPIA [LiuWuLiHu2024] is the same iteration.
 class Nesterov : public Method {
   public:
     explicit Nesterov(const NormalSystem& system,
-                      double eigenvalue_tolerance = default_eigenvalue_tolerance);
-    std::string_view name() const override { return "nesterov"; }
-    void start(const PointSet& control) override;
+                      double eigenvalue_tolerance = default_eigenvalue_tolerance,
+                      std::string_view name = "nesterov");
+    std::string_view name() const override { return name_; }
+    void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override { last_ = moves; }
     double gradient_norm() const override { return norm_; }
@@ -50,6 +52,7 @@ class Nesterov : public Method {
   private:
     const NormalSystem& system_;
     double eigenvalue_tolerance_;
+    std::string_view name_;
     double step_ = 0;
     double momentum_ = 0;
     double norm_ = 0;
@@ -64,7 +67,7 @@ class BarzilaiBorwein : public Method {
   public:
     explicit BarzilaiBorwein(const NormalSystem& system, int memory = 10);
     std::string_view name() const override { return "barzilai-borwein"; }
-    void start(const PointSet& control) override;
+    void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override;
     double gradient_norm() const override { return norm_; }

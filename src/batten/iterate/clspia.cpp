@@ -12,27 +12,29 @@ namespace batten {
 Clspia::Clspia(const NormalSystem& system, Constraints constraints, double exactness,
                ClspiaSettings settings)
     : system_(system),
-      constraints_(std::move(constraints)),
+      constraints_(constraints.balanced()),
       exactness_(exactness),
       given_(settings),
       multipliers_(constraints_.size(), system.dim()) {
     if (!std::isfinite(exactness) || exactness < 0)
         throw InvalidInput(fmt::format("clspia: exactness {} must be 0 or more", exactness));
-    multipliers_.fill(1); // lambda^0 of ones, section 3.2
 }
 
-void Clspia::start(const PointSet& control) {
+void Clspia::start(PointSet& control) {
     check_setting("clspia", "eigenvalue_tolerance", given_.eigenvalue_tolerance);
     if (given_.inner_tolerance) check_setting("clspia", "inner_tolerance", *given_.inner_tolerance);
     choose_inner_step();
     if (!constraints_.empty()) choose_outer_step();
+    multipliers_.fill(given_.lambda);
+    for (Index k = 0; k < given_.warm_start; ++k)
+        add_scaled(control, 1 / mu_1_, system_.gradient(control));
     reference_ =
         std::hypot(frobenius_norm(system_.gradient(control)), frobenius_norm(gap(control)));
 }
 
 void Clspia::choose_inner_step() {
     const ExtremeEigenvalues gamma = extreme_eigenvalues(system_, given_.eigenvalue_tolerance);
-    mu_1_ = given_.mu_1.value_or((gamma.smallest + gamma.largest) / 2);
+    mu_1_ = given_.mu_1.value_or((1 + given_.eigenvalue_tolerance) * gamma.largest);
     check_setting("clspia", "mu_1", mu_1_, {.low = gamma.largest / 2}, "its region of convergence");
 }
 
@@ -46,7 +48,7 @@ void Clspia::choose_outer_step() {
     }
     const ExtremeEigenvalues beta =
         SchurComplement(*normal, constraints_, system_.size()).eigenvalues();
-    mu_ = given_.mu.value_or(2 / (beta.smallest + beta.largest));
+    mu_ = given_.mu.value_or(1 / beta.largest);
     check_setting("clspia", "mu", mu_, {.low = 0, .high = 2 / beta.largest},
                   "its region of convergence");
 }
@@ -59,7 +61,11 @@ PointSet Clspia::gap(const PointSet& control) const {
 
 const PointSet& Clspia::propose(const PointSet& control) {
     gap_ = gap(control);
+    largest_gap_ = largest_length(gap_);
+    // where moves are limited and nothing is gained, multipliers would wind up
+    if (inner_done_ && limited_ && largest_gap_ >= gap_before_) inner_done_ = false;
     if (inner_done_) { // eq. 10, at the last control points of the inner loop
+        gap_before_ = largest_gap_;
         add_scaled(multipliers_, mu_, gap_);
         inner_done_ = false;
         ++outer_;
@@ -74,8 +80,16 @@ const PointSet& Clspia::propose(const PointSet& control) {
 
 void Clspia::accept(const PointSet& moves) {
     ++inner_;
-    const double enough = given_.inner_tolerance.value_or(1e-2 * largest_length(gap_));
+    limited_ = moves.values() != moves_.values();
+    const double part = given_.mu || given_.mu_1 ? 1e-2 : 1;
+    const double enough = given_.inner_tolerance.value_or(part * largest_gap_);
     inner_done_ = largest_length(moves) <= enough;
+}
+
+std::string Clspia::note() const {
+    if (given_.lambda == 0) return {};
+    return "lambda: multipliers that start from another number than 0 make the iterations depend "
+           "on the unit of the data";
 }
 
 Settings Clspia::settings() const {

@@ -5,25 +5,31 @@
 #include <batten/system/constraints.hpp>
 #include <batten/system/normal_system.hpp>
 
+#include <limits>
 #include <optional>
 
 namespace batten {
 
 /// The numbers of CLSPIA; an absent one is chosen.
 struct ClspiaSettings {
-    /// Outer step, else 2 / (beta_min + beta_max), beta of C (A^T A)^{-1} C^T.
+    /// Outer step, else 1 / beta_max, beta of C (A^T A)^{-1} C^T.
     std::optional<double> mu{};
-    /// The inner step is 1 / mu_1; else (gamma_min + gamma_max) / 2, gamma of A^T A.
+    /// The inner step is 1 / mu_1; else gamma_max, gamma of A^T A.
     std::optional<double> mu_1{};
-    /// The inner loop ends when max |Delta| is at most this; else a hundredth of the largest
-    /// constraint error at hand, so that it tightens as the outer loop converges.
+    /// The inner loop ends when max |Delta| is at most this; else the largest constraint error at
+    /// hand, where a step is stated a hundredth of it.
     std::optional<double> inner_tolerance{};
     double eigenvalue_tolerance = default_eigenvalue_tolerance;
+    /// Every component of the multipliers' start lambda^0.
+    double lambda = 0;
+    /// LSPIA steps before the first iteration.
+    Index warm_start = 0;
 };
 
 /// Constrained LSPIA [ChangMaDeng2023, eq. 8 to 10 and Algorithm 2]: LSPIA steps on A^T A P = A^T Q
 /// - C^T lambda until they are short, then lambda moves by mu times what the constraints lack
-/// (Uzawa).
+/// (Uzawa). With mu_1 = gamma_max and mu = 1 / beta_max, the steps of the paper's first example, a
+/// single inner step at a time converges already [BramblePasciakVassilev1997].
 class Clspia : public Method {
   public:
     /// `system` without the interpolated samples; `constraints` relative to its centre,
@@ -35,7 +41,7 @@ class Clspia : public Method {
     std::string_view name() const override { return "clspia"; }
     /// Throws InvalidInput when a step factor is outside its region of convergence or the
     /// approximated samples alone do not determine the control points.
-    void start(const PointSet& control) override;
+    void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override;
     /// Length of (A^T(Q - AP) - C^T lambda, C P - d).
@@ -44,8 +50,9 @@ class Clspia : public Method {
     /// data.
     double reference_norm() const override { return reference_; }
     Settings settings() const override;
+    std::string note() const override;
     double constraint_error() const override { return error_; }
-    bool constraints_hold() const override { return largest_length(gap_) <= exactness_; }
+    bool constraints_hold() const override { return largest_gap_ <= exactness_; }
 
   private:
     void choose_inner_step();
@@ -62,11 +69,14 @@ class Clspia : public Method {
     PointSet moves_;
     PointSet gap_; // C P - d
     double reference_ = 0;
+    double largest_gap_ = 0;
     double norm_ = 0;
     double error_ = 0;
     Index inner_ = 0;
     Index outer_ = 1;
     bool inner_done_ = false;
+    bool limited_ = false;
+    double gap_before_ = std::numeric_limits<double>::infinity(); ///< when they last moved
 };
 
 } // namespace batten

@@ -57,12 +57,13 @@ TEST(Clspia, is_judged_relative_to_the_data_and_not_to_its_start_multipliers) {
     const Held held;
     // at the least-squares optimum A^T (Q - AP) = 0: all that is left is what the samples lack
     PointSet control = solve_direct(*held.system, Constraints(2));
-    Clspia method(*held.system, held.constraints, 1e-9);
+    Clspia method(*held.system, held.constraints, 1e-9, {.lambda = 1});
     PointSet miss = held.constraints.apply(control);
     add_scaled(miss, -1, held.constraints.values());
     const Summary summary = iterate(method, control, {.max_iterations = 0});
     EXPECT_NEAR(summary.reference_norm, frobenius_norm(miss), 1e-12);
-    EXPECT_GT(summary.first_gradient_norm, 10 * summary.reference_norm); // lambda^0 = 1 pulls
+    EXPECT_GT(summary.first_gradient_norm, 10 * summary.reference_norm); // lambda^0 pulls
+    EXPECT_NE(method.note(), "");                                        // in the data's unit
 }
 
 TEST(Clspia, refuses_an_exactness_that_is_none) {

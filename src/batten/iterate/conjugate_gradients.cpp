@@ -5,7 +5,7 @@ namespace batten {
 ConjugateGradients::ConjugateGradients(const NormalSystem& system, Preconditioner preconditioner)
     : system_(system), preconditioner_(preconditioner) {}
 
-void ConjugateGradients::start(const PointSet&) {
+void ConjugateGradients::start(PointSet&) {
     if (preconditioner_ != Preconditioner::none) {
         inverse_diagonal_ = system_.diagonal();
         for (double& x : inverse_diagonal_) x = x > 0 ? 1 / x : 0;

@@ -23,7 +23,7 @@ class ConjugateGradients : public Method {
                                 Preconditioner preconditioner = Preconditioner::diagonal);
 
     std::string_view name() const override { return "cg"; }
-    void start(const PointSet& control) override;
+    void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override;
     double gradient_norm() const override { return norm_; }

@@ -11,7 +11,7 @@ namespace batten {
 Lspia::Lspia(const NormalSystem& system, std::optional<double> mu, double eigenvalue_tolerance)
     : system_(system), given_mu_(mu), eigenvalue_tolerance_(eigenvalue_tolerance) {}
 
-void Lspia::start(const PointSet&) {
+void Lspia::start(PointSet&) {
     check_setting("lspia", "eigenvalue_tolerance", eigenvalue_tolerance_);
     const WorkingEigenvalues working = working_eigenvalues(system_, eigenvalue_tolerance_);
     const ExtremeEigenvalues& sigma2 = working.values;

@@ -18,7 +18,7 @@ class Lspia : public Method {
 
     std::string_view name() const override { return "lspia"; }
     /// Throws InvalidInput unless 0 < mu < 2 / sigma_1^2.
-    void start(const PointSet& control) override;
+    void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet&) override {}
     double gradient_norm() const override { return norm_; }

@@ -26,8 +26,9 @@ class Method {
     Method& operator=(const Method&) = delete;
 
     virtual std::string_view name() const = 0;
-    /// Prepares for the control points P^0; throws InvalidInput when a setting forbids convergence.
-    virtual void start(const PointSet& control) = 0;
+    /// Prepares for the control points P^0, which it may move first; throws InvalidInput when a
+    /// setting forbids convergence.
+    virtual void start(PointSet& control) = 0;
     /// The moves that the method wants at P^k.
     virtual const PointSet& propose(const PointSet& control) = 0;
     /// The moves made from P^k to P^{k+1}.

@@ -2,9 +2,12 @@
 
 #include <batten/core/names.hpp>
 #include <batten/iterate/accelerated.hpp>
+#include <batten/iterate/alspia.hpp>
 #include <batten/iterate/conjugate_gradients.hpp>
+#include <batten/iterate/lin2018.hpp>
 #include <batten/iterate/lspia.hpp>
 #include <batten/iterate/mlspia.hpp>
+#include <batten/iterate/salspia.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -44,13 +47,17 @@ constexpr MethodSetting mlspia_settings[]{
 };
 
 constexpr MethodSetting clspia_settings[]{
-    {"mu", "outer step: of the multipliers", "2 / (beta_min + beta_max)", positive,
+    {"mu", "outer step: of the multipliers", "1 / beta_max", positive,
      "Chang, Ma, Deng 2023, eq. 10"},
-    {"mu_1", "inverse of the inner step: of the control points", "(gamma_min + gamma_max) / 2",
-     positive, "Chang, Ma, Deng 2023, eq. 8"},
+    {"mu_1", "inverse of the inner step: of the control points", "gamma_max", positive,
+     "Chang, Ma, Deng 2023, eq. 8"},
     {"inner_tolerance", "longest move that ends the inner loop",
-     "a hundredth of the largest constraint error at hand", positive,
+     "the largest constraint error at hand, a hundredth of it where mu or mu_1 is stated", positive,
      "Chang, Ma, Deng 2023, Algorithm 2"},
+    {"lambda", "every component of the multipliers at the start", 0.0, any_number,
+     "Chang, Ma, Deng 2023, section 3.2: 1; its tables: 0"},
+    {"warm_start", "LSPIA steps before the first iteration", 0.0, counts,
+     "Chang, Ma, Deng 2023, section 4"},
     eigenvalue_setting,
 };
 
@@ -81,6 +88,18 @@ constexpr MethodSetting barzilai_borwein_settings[]{
      "Grippo, Lampariello, Lucidi 1986"},
 };
 
+constexpr MethodSetting salspia_settings[]{
+    {"memory", "functionals that the search looks back on", 10.0, counts_from_one, "Peng, Li 2026"},
+    {"step", "0: blended, 1: Barzilai and Borwein's longer one, 2: their shorter one", 0.0,
+     SettingRange{0, 2, closed, closed, Numbers::whole}, "Peng, Li 2026"},
+};
+
+constexpr MethodSetting alspia_settings[]{
+    {"cycle", "Chebyshev roots taken in turn; the authors' 10000 overflow in long runs", 16.0,
+     counts_from_one, "Wu, Liu 2024"},
+    eigenvalue_setting,
+};
+
 constexpr MethodEntry table[]{
     {"auto", "the fastest that answers the question", "", {}},
     {"search", "the fewest control points within a tolerance", "", {}},
@@ -99,6 +118,14 @@ constexpr MethodEntry table[]{
     {"nesterov", "LSPIA with Nesterov's momentum", "Nesterov 2004", eigenvalues_only},
     {"barzilai-borwein", "LSPIA with Barzilai-Borwein steps and a non-monotone search",
      "Barzilai, Borwein 1988; Grippo, Lampariello, Lucidi 1986", barzilai_borwein_settings},
+    {"salspia", "LSPIA with steps that adapt to the spectrum, without eigenvalues", "Peng, Li 2026",
+     salspia_settings},
+    {"alspia", "LSPIA with one over Chebyshev roots as steps", "Wu, Liu 2024", alspia_settings},
+    {"nmlspia", "LSPIA with Nesterov's momentum", "Liu, Wu, Li, Hu 2024", eigenvalues_only},
+    {"lin2018",
+     "LSPIA for singular systems: a step of each control point's own",
+     "Lin, Cao, Zhang 2018",
+     {}},
 };
 
 /// The method's setting of that name, nullptr when it has none.
@@ -177,6 +204,13 @@ std::unique_ptr<Method> make_method(std::string_view name, const NormalSystem& s
     if (name == "nesterov") return std::make_unique<Nesterov>(system, accuracy());
     if (name == "barzilai-borwein")
         return std::make_unique<BarzilaiBorwein>(system, static_cast<int>(number("memory")));
+    if (name == "salspia")
+        return std::make_unique<Salspia>(system, static_cast<int>(number("memory")),
+                                         static_cast<SpectralStep>(number("step")));
+    if (name == "alspia")
+        return std::make_unique<Alspia>(system, static_cast<Index>(number("cycle")), accuracy());
+    if (name == "nmlspia") return std::make_unique<Nesterov>(system, accuracy(), "nmlspia");
+    if (name == "lin2018") return std::make_unique<Lin2018>(system);
     throw InvalidInput(fmt::format("method {} is no iteration on the normal equations", name));
 }
 

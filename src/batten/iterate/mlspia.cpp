@@ -57,7 +57,7 @@ double Mlspia::root_modulus(double sigma2) const {
     return std::max(std::abs((-b + root) / 2.0), std::abs((-b - root) / 2.0));
 }
 
-void Mlspia::start(const PointSet& control) {
+void Mlspia::start(PointSet& control) {
     check_setting("mlspia", "eigenvalue_tolerance", eigenvalue_tolerance_);
     const WorkingEigenvalues working = working_eigenvalues(system_, eigenvalue_tolerance_);
     const ExtremeEigenvalues& sigma2 = working.values;

@@ -31,7 +31,7 @@ class Mlspia : public Method {
 
     std::string_view name() const override { return "mlspia"; }
     /// Throws InvalidInput when the weights are outside the convergence region [eq. 11].
-    void start(const PointSet& control) override;
+    void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override;
     double gradient_norm() const override { return norm_; }

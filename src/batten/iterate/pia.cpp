@@ -30,7 +30,7 @@ void Pia::keep_chosen(PointSet& moves) const {
             for (double& x : moves[i]) x = 0;
 }
 
-void Pia::start(const PointSet& control) {
+void Pia::start(PointSet& control) {
     const VectorOperator wa = [&](const std::vector<double>& in, std::vector<double>& out) {
         out = std::move(image(PointSet(in, 1)).values());
     };

@@ -24,7 +24,7 @@ class Pia : public Method {
 
     std::string_view name() const override { return "pia"; }
     /// Throws InvalidInput when the iteration would diverge and that is refused.
-    void start(const PointSet& control) override;
+    void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet&) override {}
     /// Frobenius norm of W(Q - AP) over the control points that move.

@@ -58,7 +58,7 @@ TEST(Settings, library_calls_check_what_the_command_checks) {
     const Samples rose = generate("rose");
     const Parameters t = parametrize(rose, Parametrization::chord, {Closure::open});
     const auto system = assemble({knots_from_parameters(t.axes[0], 3, 30)}, rose, t);
-    const PointSet control(30, 2);
+    PointSet control(30, 2);
     const auto refusal = [&](Method&& method) {
         return message_of<InvalidInput>([&] { method.start(control); });
     };

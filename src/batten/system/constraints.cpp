@@ -47,6 +47,19 @@ Constraints Constraints::with_lengths(std::span<const double> lengths) const {
     return result;
 }
 
+Constraints Constraints::balanced() const {
+    Constraints result = *this;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+        if (std::abs(sums_[k]) > 0.5) continue; // positions
+        double square = 0;
+        for (const Entry& entry : rows_[k]) square += entry.value * entry.value;
+        const double scale = 1 / std::sqrt(square);
+        for (Entry& entry : result.rows_[k]) entry.value *= scale;
+        for (double& x : result.values_[static_cast<Index>(k)]) x *= scale;
+    }
+    return result;
+}
+
 void Constraints::add_row(std::vector<Entry> row, double sum, std::span<const double> value,
                           std::string name) {
     rows_.push_back(std::move(row));

@@ -36,6 +36,10 @@ class Constraints {
     /// The same constraints with lengths given to the directions, in order: none is left free.
     Constraints with_lengths(std::span<const double> lengths) const;
 
+    /// The same constraints, those of derivatives divided by the length of their rows: what they
+    /// lack is then as long as control points are away.
+    Constraints balanced() const;
+
     /// C P: (k x dim).
     PointSet apply(const PointSet& control) const;
     /// C^T y: (n x dim) for n control points.

@@ -1,0 +1,49 @@
+#include <batten/iterate/alspia.hpp>
+
+#include <batten/iterate/methods.hpp>
+#include <batten/solve/extreme_eigenvalues.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace batten {
+
+Alspia::Alspia(const NormalSystem& system, Index cycle, double eigenvalue_tolerance)
+    : system_(system), cycle_(cycle), eigenvalue_tolerance_(eigenvalue_tolerance) {}
+
+void Alspia::start(PointSet&) {
+    constexpr double singular = 1e-10;
+    check_setting("alspia", "cycle", static_cast<double>(cycle_));
+    check_setting("alspia", "eigenvalue_tolerance", eigenvalue_tolerance_);
+    const ExtremeEigenvalues e = extreme_eigenvalues(system_, eigenvalue_tolerance_);
+    largest_ = e.largest;
+    smallest_ = e.smallest > singular * e.largest ? e.smallest : 0;
+    taken_ = 0;
+}
+
+/// One over the next root, of a cycle in its natural order.
+double Alspia::factor() const {
+    const auto cycle = static_cast<double>(cycle_);
+    const auto odd = static_cast<double>(2 * (taken_ % cycle_) + 1);
+    const auto root = [&](double of, double odd_number) {
+        return std::cos(odd_number * std::numbers::pi / (2 * of));
+    };
+    if (smallest_ > 0)
+        return 2 / (largest_ + smallest_ + (largest_ - smallest_) * root(cycle, odd));
+    const double last = root(cycle + 1, 2 * cycle + 1); // of the roots it is moved to 0
+    return (1 - last) / (largest_ * (root(cycle + 1, odd) - last));
+}
+
+const PointSet& Alspia::propose(const PointSet& control) {
+    moves_ = system_.gradient(control);
+    norm_ = frobenius_norm(moves_);
+    const double step = factor();
+    for (double& x : moves_.values()) x *= step;
+    return moves_;
+}
+
+Settings Alspia::settings() const {
+    return {{"cycle", static_cast<double>(cycle_)}, {"largest", largest_}, {"smallest", smallest_}};
+}
+
+} // namespace batten
