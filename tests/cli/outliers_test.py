@@ -244,6 +244,27 @@ def small_cloud(seed):
     return np.column_stack([place, heights]), [outlier], sigma, ["-n", "3x3", "--degree", 2, "--project", "xy"]
 
 
+def small_grid(seed):
+    """A table, a part of a sphere, uneven lines or a volume, of a dozen to 40 samples along an axis."""
+    rng = np.random.default_rng(seed)
+    sigma = float(rng.choice([1e-4, 1e-3, 1e-2]))
+    along = [np.linspace(0, 1, k) for k in rng.integers(12, 40, 2)]
+    kind, size = ("table", "sphere", "uneven", "volume")[seed % 4], ["-n", "8x8"]
+    if kind == "uneven":
+        along = [a + rng.uniform(-0.4, 0.4, len(a)) / (len(a) - 1) for a in along]
+    if kind == "volume":
+        along, size = [np.linspace(0, 1, k) for k in (10, 12, 9)], ["-n", "5x5x5"]
+    u, v, *w = np.meshgrid(*along, indexing="ij")
+    values = {"table": lambda: [np.sin(5 * u) * np.cos(3 * v)], "uneven": lambda: [3 * u, 2 * v, np.sin(5 * u) * np.cos(3 * v)],
+              "sphere": lambda: [np.sin(0.3 + 2.5 * u) * np.cos(5 * v), np.sin(0.3 + 2.5 * u) * np.sin(5 * v), np.cos(0.3 + 2.5 * u)],
+              "volume": lambda: [np.sin(4 * u) * np.cos(3 * v) + w[0] ** 2 * u]}[kind]()
+    points = np.stack(values, axis=-1)
+    points += sigma * rng.normal(size=points.shape)
+    planted = np.sort(rng.choice(u.size, int(rng.integers(1, 10)), replace=False))
+    points.reshape(u.size, -1)[planted, -1] += sigma * 10 ** rng.uniform(1.5, 3, len(planted)) * rng.choice([-1, 1], len(planted))
+    return (points[..., 0] if kind == "table" else points), planted.tolist(), sigma, size + (["--heights"] if kind == "table" else [])
+
+
 def cloud_of_repeated_places(seed):
     """Each place is measured many times, or half of all samples are at one place."""
     rng = np.random.default_rng(seed)
@@ -302,6 +323,9 @@ class Outliers(InFolder):
     def test_of_clouds_in_any_unit(self):
         """Lattices and scanned lines, too: the samples themselves say what is near."""
         self.check(cloud_in_units, 0.97)
+
+    def test_of_small_grids(self):
+        self.check(small_grid, 0.95)
 
     def test_of_small_clouds(self):
         self.check(small_cloud, 0.97)

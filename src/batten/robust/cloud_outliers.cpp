@@ -20,6 +20,7 @@ using Neighbours = TrustedCloud::Neighbours;
 struct Accused {
     Index sample;
     Neighbours neighbours;
+    Eigen::VectorXd way{};                                  ///< to where they have it
     double part = 0;                                        ///< the residual in limits
     double limit = std::numeric_limits<double>::infinity(); ///< how far off it might be; infinite
                                                             ///< where nobody knows
@@ -43,6 +44,7 @@ void judge(const TrustedCloud& cloud, double least, Accused& accused) {
     const double worst = process.of_neighbours().maxCoeff();
     accused.limit = std::max(least, std::max(usual, beside * worst) * process.deviation());
     accused.part = process.residual() / accused.limit;
+    accused.way = process.way();
 }
 
 /// Trusts those that are explained, the most certain first; those that nobody knows stay, too.
@@ -89,7 +91,7 @@ void take_back_of_few(TrustedCloud& cloud, const std::vector<double>& least,
 
 /// Those that have no more than three others among their eight nearest, nor one that has more
 /// beside it: many together are a part of the shape.
-std::vector<Index> alone(TrustedCloud& cloud, const std::vector<Accused>& left) {
+std::vector<Accused> alone(TrustedCloud& cloud, std::vector<Accused> left) {
     constexpr Index beside = 8;
     constexpr Index many = 4;
     std::vector<char> out(static_cast<std::size_t>(cloud.size()), 0);
@@ -105,27 +107,36 @@ std::vector<Index> alone(TrustedCloud& cloud, const std::vector<Accused>& left) 
             std::ranges::count_if(around[k], [&](const auto& n) {
                 return out[static_cast<std::size_t>(n.place)] != 0;
             }) >= many;
-    std::vector<Index> result;
+    std::vector<Accused> result;
     for (std::size_t k = 0; k < left.size(); ++k)
         if (!crowded[static_cast<std::size_t>(left[k].sample)] &&
             std::ranges::none_of(around[k], [&](const auto& n) {
                 return crowded[static_cast<std::size_t>(n.place)] != 0;
             }))
-            result.push_back(cloud.original(left[k].sample));
-    std::ranges::sort(result);
+            result.push_back(std::move(left[k]));
     return result;
 }
 
 } // namespace
 
-std::vector<Index> cloud_outliers(const Points& points, const Points& places,
-                                  const std::vector<double>& least) {
+NeighbourOutliers cloud_outliers(const Points& points, const Points& places,
+                                 const std::vector<double>& least) {
     TrustedCloud cloud = cloud_by_best_metric(points, places);
     std::vector<Accused> left;
     for (Index i : leave_out_suspects(cloud, least)) left.push_back({i, {}});
     if (2 * std::ssize(left) > cloud.size()) return {}; // nobody to ask
     take_back_of_few(cloud, least, left);
-    return alone(cloud, left);
+    left = alone(cloud, std::move(left));
+    std::ranges::sort(left, {}, [&](const Accused& a) { return cloud.original(a.sample); });
+    NeighbourOutliers result{{}, PointSet(std::ssize(left), points.dim())};
+    for (const Accused& a : left) {
+        const auto predicted = result.predicted[std::ssize(result.samples)];
+        const Index sample = cloud.original(a.sample);
+        for (Index d = 0; d < points.dim(); ++d)
+            predicted[static_cast<std::size_t>(d)] = points(sample, d) + a.way(d);
+        result.samples.push_back(sample);
+    }
+    return result;
 }
 
 } // namespace batten

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <batten/core/core.hpp>
+#include <batten/robust/neighbours.hpp>
 
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace batten {
 ///
 /// The farthest are left out first and the others judged anew without them; at last what the rest
 /// explains comes back, the most certain first. Many together stay.
-std::vector<Index> cloud_outliers(const Points& points, const Points& places,
-                                  const std::vector<double>& least);
+NeighbourOutliers cloud_outliers(const Points& points, const Points& places,
+                                 const std::vector<double>& least);
 
 } // namespace batten

@@ -187,7 +187,7 @@ LocalProcess::LocalProcess(const MatrixXd& places, const MatrixXd& values) {
     const MatrixXd by_drift = directions.transpose() * straight.solve(values);
     by.rest = values - by.terms * by_drift; // for the sake of rounding
     exists_ = true;
-    residual_ = (at_sample.transpose() * by_drift).norm();
+    way_ = (at_sample.transpose() * by_drift).transpose();
     of_neighbours_.setZero(k);
     const Solved best = Likeliest(by).solved;
     if (!(best.variance > 0)) return; // nothing but the drift
@@ -195,9 +195,9 @@ LocalProcess::LocalProcess(const MatrixXd& places, const MatrixXd& values) {
     const auto drift_factor = best.of_drift.triangularView<Eigen::Lower>();
     const MatrixXd drift = drift_factor.solve(best.terms(by)); // orthonormal rows
     const VectorXd to_drift = drift_factor.solve(at_sample) - drift * best.sample().transpose();
-    residual_ = (best.sample() * best.values(by).transpose() +
-                 to_drift.transpose() * best.explained(by) + at_sample.transpose() * by_drift)
-                    .norm();
+    way_ = (best.sample() * best.values(by).transpose() +
+            to_drift.transpose() * best.explained(by) + at_sample.transpose() * by_drift)
+               .transpose();
     const auto free = static_cast<double>(k - p);
     const double variance = best.variance * std::pow(1 + 24 / (free * free), 2);
     deviation_ = std::sqrt(variance *
@@ -211,8 +211,8 @@ LocalProcess::LocalProcess(const MatrixXd& places, const MatrixXd& values) {
 }
 
 double LocalProcess::normal() const {
-    if (deviation_ > 0) return residual_ / deviation_;
-    return residual_ > 0 ? std::numeric_limits<double>::infinity() : 0;
+    if (deviation_ > 0) return residual() / deviation_;
+    return residual() > 0 ? std::numeric_limits<double>::infinity() : 0;
 }
 
 } // namespace batten

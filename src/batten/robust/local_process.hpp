@@ -16,7 +16,9 @@ class LocalProcess {
     /// Whether the neighbours determine the drift.
     bool exists() const { return exists_; }
     /// How far the sample is from where the process has it.
-    double residual() const { return residual_; }
+    double residual() const { return way_.norm(); }
+    /// From the sample to there (dim).
+    const Eigen::VectorXd& way() const { return way_; }
     /// Standard deviation of that, 0 where the neighbours have neither noise nor a bend; the more
     /// the fewer they are, for few know less of it.
     double deviation() const { return deviation_; }
@@ -27,7 +29,7 @@ class LocalProcess {
 
   private:
     bool exists_ = false;
-    double residual_ = 0;
+    Eigen::VectorXd way_;
     double deviation_ = 0;
     Eigen::VectorXd of_neighbours_;
 };

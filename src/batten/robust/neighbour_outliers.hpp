@@ -4,12 +4,6 @@
 
 namespace batten {
 
-/// Samples that were set aside, ascending, and where their neighbours have them.
-struct NeighbourOutliers {
-    std::vector<Index> samples;
-    PointSet predicted;
-};
-
 /// Samples of a sequence or grid that disagree with their neighbours along every axis: what those
 /// predict that are most certain is further away than five to six standard deviations of noise,
 /// than four times what the same polynomials are off beside the sample, and than `least` (one per

@@ -87,4 +87,10 @@ class Trusted {
     std::vector<char> trusted_;
 };
 
+/// Samples that were set aside, ascending, and where their neighbours have them.
+struct NeighbourOutliers {
+    std::vector<Index> samples;
+    PointSet predicted;
+};
+
 } // namespace batten

@@ -5,6 +5,7 @@
 #include <batten/robust/neighbour_outliers.hpp>
 #include <batten/robust/sequence_outliers.hpp>
 #include <batten/robust/suspects.hpp>
+#include <batten/samples/noise.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -55,7 +56,44 @@ Problem with_values(Problem problem, const NeighbourOutliers& outliers) {
     return problem;
 }
 
+/// Steps along an axis of a grid of points: the medians of their lengths, summed up, so that no
+/// outlier counts.
+std::vector<double> median_lengths(const Problem& problem, std::size_t axis) {
+    const Points& points = problem.samples.points;
+    const GridIndex grid(problem.samples.shape());
+    const Index stride = grid.stride(axis);
+    std::vector<double> along{0};
+    for (Index k = 1; k < grid.length(axis); ++k) {
+        std::vector<double> steps;
+        for (Index i = 0; i < points.size(); ++i)
+            if (i / stride % grid.length(axis) == k)
+                steps.push_back(distance(points[i], points[i - stride]));
+        along.push_back(along.back() + median(std::move(steps)));
+    }
+    return along;
+}
+
+/// The parameters of a grid's samples (m x axes), each by itself.
+PointSet places_of_grid(const Problem& problem) {
+    const GridIndex grid(problem.samples.shape());
+    PointSet places(problem.samples.size(), static_cast<Index>(grid.axis_count()));
+    for (std::size_t axis = 0; axis < grid.axis_count(); ++axis) {
+        std::vector<double> along = known_places(problem, axis);
+        if (along.empty()) along = median_lengths(problem, axis);
+        for (Index i = 0; i < places.size(); ++i)
+            places(i, static_cast<Index>(axis)) =
+                along[static_cast<std::size_t>(i / grid.stride(axis) % grid.length(axis))];
+    }
+    return places;
+}
+
+/// Of a small grid as of a cloud, for what is all around a sample knows more of it than a line; a
+/// larger one's lines know enough.
 NeighbourOutliers of_grid(const Problem& problem) {
+    constexpr Index small = 5000;
+    if (problem.samples.size() <= small)
+        return cloud_outliers(problem.samples.points, places_of_grid(problem),
+                              least_residuals(problem));
     std::vector<std::vector<double>> along;
     for (std::size_t k = 0; k < problem.axes.count(); ++k)
         along.push_back(known_places(problem, k));
@@ -77,7 +115,8 @@ WithoutOutliers without_outliers(const Problem& problem) {
             ? sequence_outliers(problem.samples.points, problem.axes.closures[0],
                                 least_residuals(problem), known_places(problem, 0))
             : cloud_outliers(problem.samples.points, problem.parameters.scattered,
-                             least_residuals(problem));
+                             least_residuals(problem))
+                  .samples;
     if (outliers.empty()) return {problem, {}};
     const Subset kept = Subset::without(outliers, problem.samples.size());
     return {problem_of(kept.of(problem.samples), kept.of(problem.options)), std::move(outliers)};
