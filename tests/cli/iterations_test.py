@@ -175,6 +175,18 @@ class Iterations(InFolder):
             self.assertTrue((control[~seen] == 0).all(), method)
             self.assertLess(np.linalg.norm(matrix.T @ (points - matrix @ control)), 1e-7, method)
 
+    def test_lspia_over_a_hole_takes_steps_that_get_somewhere(self):
+        t = np.r_[np.linspace(0, 0.4, 300), np.linspace(0.6, 1, 200)]
+        points = np.column_stack([np.cos(4 * t), np.sin(6 * t)]) + 0.001 * np.random.default_rng(1).normal(size=(500, 2))
+        knots = np.r_[np.zeros(3), np.linspace(0, 1, 60), np.ones(3)]
+        np.save(self.folder / "t.npy", t)
+        np.savetxt(self.folder / "k.txt", knots, fmt="%.17g")
+        matrix = design(knots, 3, t)
+        best = np.linalg.norm(points - matrix @ np.linalg.lstsq(matrix, points, rcond=None)[0])
+        spline, summary = self.run_fit(points, "--parameters", "t.npy", "--knots", "k.txt", "-m", "lspia", "--max-iterations", 2000)
+        self.assertLess(np.linalg.norm(points - matrix @ np.array(spline["control_points"])), 1.01 * best)
+        self.assertIn("Lin, Cao, Zhang", " ".join(summary["notes"]))
+
     def test_peng_and_lis_tables_come_out(self):
         text = subprocess.run([BATTEN, "reproduce", "salspia", "--folder", "r"], cwd=self.folder, capture_output=True, text=True, timeout=GUARD).stdout
         rows = re.findall(r"^  (4\.\S.*?) {2,}(\S+) +(\S+) +\S+$", text, re.M)

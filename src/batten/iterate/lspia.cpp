@@ -1,5 +1,6 @@
 #include <batten/iterate/lspia.hpp>
 
+#include <batten/iterate/lin2018.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/solve/extreme_eigenvalues.hpp>
 
@@ -16,6 +17,14 @@ void Lspia::start(PointSet&) {
     const WorkingEigenvalues working = working_eigenvalues(system_, eigenvalue_tolerance_);
     const ExtremeEigenvalues& sigma2 = working.values;
     note_ = working.note;
+    own_steps_.clear();
+    if (working.ill_determined && !given_mu_) {
+        own_steps_ = diagonal_steps(system_);
+        note_ += note_.empty() ? "ill-determined" : "";
+        note_ += "; each control point takes the step of Lin, Cao, Zhang 2018 in place of mu";
+        rate_ = 0;
+        return;
+    }
     mu_ = given_mu_.value_or(2 / (sigma2.largest + sigma2.smallest));
     // the largest eigenvalue is known from below only: near the edge leave the judgement to the
     // iteration
@@ -27,8 +36,16 @@ void Lspia::start(PointSet&) {
 const PointSet& Lspia::propose(const PointSet& control) {
     moves_ = system_.gradient(control);
     norm_ = frobenius_norm(moves_);
-    for (double& x : moves_.values()) x *= mu_;
+    for (Index i = 0; i < moves_.size(); ++i) {
+        const double step = own_steps_.empty() ? mu_ : own_steps_[static_cast<std::size_t>(i)];
+        for (double& x : moves_[i]) x *= step;
+    }
     return moves_;
+}
+
+Settings Lspia::settings() const {
+    if (own_steps_.empty()) return {{"mu", mu_}};
+    return {};
 }
 
 } // namespace batten

@@ -12,7 +12,8 @@ namespace batten {
 class Lspia : public Method {
   public:
     /// Without `mu` the best one, 2 / (sigma_1^2 + sigma_r^2), from eigenvalues of that relative
-    /// accuracy.
+    /// accuracy; where the samples leave directions ill-determined a step of each control point's
+    /// own, as lin2018 takes it.
     explicit Lspia(const NormalSystem& system, std::optional<double> mu = {},
                    double eigenvalue_tolerance = default_eigenvalue_tolerance);
 
@@ -22,7 +23,7 @@ class Lspia : public Method {
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet&) override {}
     double gradient_norm() const override { return norm_; }
-    Settings settings() const override { return {{"mu", mu_}}; }
+    Settings settings() const override;
     double predicted_rate() const override { return rate_; }
     std::string note() const override { return note_; }
 
@@ -30,6 +31,7 @@ class Lspia : public Method {
     const NormalSystem& system_;
     std::optional<double> given_mu_;
     double mu_ = 0;
+    std::vector<double> own_steps_; ///< in place of mu
     double eigenvalue_tolerance_;
     double rate_ = 0;
     std::string note_;

@@ -186,7 +186,8 @@ WorkingEigenvalues working_eigenvalues(const NormalSystem& system, double tolera
     constexpr double working = 1e-6;
     WorkingEigenvalues result{extreme_eigenvalues(system, tolerance), ill_determined_words(system)};
     ExtremeEigenvalues& e = result.values;
-    e.smallest = e.smallest < ill_determined * e.largest ? working * e.largest : e.smallest;
+    result.ill_determined = !result.note.empty() || e.smallest < working * e.largest;
+    if (e.smallest < ill_determined * e.largest) e.smallest = working * e.largest;
     return result;
 }
 

@@ -31,7 +31,8 @@ ExtremeEigenvalues extreme_eigenvalues(const NormalSystem& system, double tolera
 /// Eigenvalues to choose step factors by.
 struct WorkingEigenvalues {
     ExtremeEigenvalues values;
-    std::string note; ///< says so when directions are ill-determined
+    std::string note;            ///< says so when directions are ill-determined
+    bool ill_determined = false; ///< the note is there, or the smallest below 1e-6 of the largest
 };
 
 /// The extreme eigenvalues, but when the smallest is below 1e-8 of the largest, 1e-6 of the largest
