@@ -1,15 +1,19 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace batten::command {
 
+/// Where a paper prints no figure.
+inline constexpr double unprinted = std::numeric_limits<double>::quiet_NaN();
+
 /// A figure of a paper beside ours.
 struct Reproduced {
     std::string what;
-    double published; ///< NaN where the paper prints none
+    double published; ///< or unprinted
     double computed;
 };
 

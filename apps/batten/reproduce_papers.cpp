@@ -18,7 +18,6 @@ namespace batten::command {
 
 namespace {
 
-constexpr double unprinted = std::numeric_limits<double>::quiet_NaN();
 constexpr double printed_digits = 1e-12; // accuracy of the eigenvalues behind the printed weights
 
 /// Runs a fit with history, draws the history, the limit with its curvature comb, and pictures of
@@ -257,8 +256,8 @@ std::span<const Paper> papers() {
          "Built-in data of the same sizes stand in for the glyph and the profile.", clspia},
         {"salspia", "Peng, Li 2026",
          "Not run, for their data are not to be had here: 4.3 (reindeer), 4.6 (terrain), 4.7 "
-         "(loop); "
-         "4.8 (a start interpolated over a triangulation that is not unique). The stop rule tests "
+         "(loop), 4.8 (a start interpolated over a triangulation that is not unique). The stop "
+         "rule tests "
          "the square of the relative gradient, 1e-6. alspia takes the authors' cycle of 10000 "
          "roots, in which these steps are all but the largest eigenvalue's.",
          peng_li},

@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <numbers>
 
 namespace batten::command {
 
 namespace {
 
-constexpr double unprinted = std::numeric_limits<double>::quiet_NaN();
 constexpr double pi = std::numbers::pi;
 
 /// n places from a to b, both of them.
@@ -87,7 +85,7 @@ struct Experiment {
     FitOptions options;
 };
 
-/// Curves: chord-length parameters, knots between them, every so manieth sample as the start.
+/// Curves: chord-length parameters, knots between them, every many-th sample as the start.
 Experiment along_curve(Samples samples, Index n) {
     const Parameters t = parametrize(samples, Parametrization::chord, {Closure::open});
     const Index m = samples.size();
@@ -141,7 +139,7 @@ Samples take_away(Experiment& from, const std::vector<double>& centres, double h
     return hole;
 }
 
-FitReport run(const Experiment& experiment, std::string_view method, FitResult& result) {
+FitResult run(const Experiment& experiment, std::string_view method) {
     FitOptions options = experiment.options;
     options.method.name = method;
     if (method == "alspia") options.method.settings["cycle"] = 10000;
@@ -149,8 +147,7 @@ FitReport run(const Experiment& experiment, std::string_view method, FitResult& 
     if (method == "lspia" || method == "alspia" || method == "mlspia" || method == "nmlspia")
         options.method.settings["eigenvalue_tolerance"] = 1e-10;
     options.stop.relative_gradient = 1e-3; // its square is what the paper's stop rule tests
-    result = fit(experiment.samples, options);
-    return result.report;
+    return fit(experiment.samples, options);
 }
 
 double error(const FitReport& report) { // E, in 1e-7
@@ -163,48 +160,46 @@ struct Line {
     double iterations, error, rms, largest;
 };
 
+/// A row for each figure of the lines; `where` says of what `deviation(result)` is.
+template <class Deviate>
 void compare(const std::string& what, const Experiment& experiment, const std::vector<Line>& lines,
-             std::vector<Reproduced>& rows) {
-    FitResult result;
+             const char* where, Deviate deviation, std::vector<Reproduced>& rows) {
     for (const auto& [method, iterations, e, rms, largest] : lines) {
-        const FitReport report = run(experiment, method, result);
+        const FitResult result = run(experiment, method);
+        const FitReport& report = result.report;
         const std::string name = fmt::format("{}, {}: ", what, method);
         rows.push_back({name + "iterations", iterations, static_cast<double>(report.iterations)});
-        if (std::isfinite(e)) {
-            rows.push_back({name + "E in 1e-7", e, error(report)});
-            rows.push_back({name + "rms", rms, report.deviation.rms});
-            rows.push_back({name + "largest", largest, report.deviation.maximum});
-        }
+        if (!std::isfinite(e)) continue;
+        const Deviation there = deviation(result);
+        rows.push_back({name + "E in 1e-7", e, error(report)});
+        rows.push_back({name + "rms" + where, rms, there.rms});
+        rows.push_back({name + "largest" + where, largest, there.maximum});
     }
-    rows.push_back({what + ", direct, ours: rms", unprinted,
-                    run({experiment.samples,
-                         [&] {
-                             FitOptions options = experiment.options;
-                             options.method.initial = Initial::data;
-                             options.method.control = {};
-                             return options;
-                         }()},
-                        "direct", result)
-                        .deviation.rms});
 }
 
+/// The deviation of the samples, and what the direct answer leaves.
+void compare_full(const std::string& what, Experiment experiment, const std::vector<Line>& lines,
+                  std::vector<Reproduced>& rows) {
+    compare(
+        what, experiment, lines, "", [](const FitResult& r) { return r.report.deviation; }, rows);
+    experiment.options.method = {};
+    rows.push_back(
+        {what + ", direct, ours: rms", unprinted, run(experiment, "direct").report.deviation.rms});
+}
+
+/// The deviation of what is taken away.
 void compare_hole(const std::string& what, Experiment experiment,
                   const std::vector<double>& centres, const std::vector<Line>& lines,
                   std::vector<Reproduced>& rows) {
     std::vector<double> at;
     const Samples hole = take_away(experiment, centres, 0.02, at);
-    FitResult result;
-    for (const auto& [method, iterations, e, rms, largest] : lines) {
-        const FitReport report = run(experiment, method, result);
-        const std::string name = fmt::format("{}, {}: ", what, method);
-        rows.push_back({name + "iterations", iterations, static_cast<double>(report.iterations)});
-        if (!std::isfinite(e)) continue;
-        const Deviation there = summarise(
-            parametric_deviations(result.spline, hole, {.axes = {at}}), DeviationKind::parametric);
-        rows.push_back({name + "E in 1e-7", e, error(report)});
-        rows.push_back({name + "rms in the holes", rms, there.rms});
-        rows.push_back({name + "largest in the holes", largest, there.maximum});
-    }
+    compare(
+        what, experiment, lines, " in the holes",
+        [&](const FitResult& r) {
+            return summarise(parametric_deviations(r.spline, hole, {.axes = {at}}),
+                             DeviationKind::parametric);
+        },
+        rows);
 }
 
 } // namespace
@@ -212,38 +207,38 @@ void compare_hole(const std::string& what, Experiment experiment,
 std::vector<Reproduced> peng_li(Drawings&) {
     std::vector<Reproduced> rows;
     const double none = unprinted;
-    compare("4.1 blob", along_curve(blob(15001), 3001),
-            {{"lspia", 77, 9.336, 1.073e-5, 2.552e-5},
-             {"alspia", 6, 9.415, 2.383e-5, 1.081e-3},
-             {"mlspia", 25, 7.338, 9.510e-6, 2.288e-5},
-             {"nmlspia", 5, 9.739, 1.763e-5, 5.298e-4},
-             {"salspia", 4, 8.164, 2.279e-5, 1.135e-3},
-             {"cg", none, none, none, none}},
-            rows);
-    compare("4.2 helix", along_curve(helix(2 * pi, 10001), 2001),
-            {{"lspia", 77, 9.646, 2.084e-5, 3.836e-5},
-             {"alspia", 7, 6.292, 3.859e-5, 1.503e-3},
-             {"mlspia", 25, 7.736, 1.867e-5, 3.482e-5},
-             {"nmlspia", 6, 3.595, 2.235e-5, 5.400e-4},
-             {"salspia", 4, 9.155, 4.615e-5, 1.875e-3},
-             {"cg", none, none, none, none}},
-            rows);
-    compare("4.4 Dini", over_grid(dini(), 31),
-            {{"lspia", 213, 9.756, 3.383e-4, 9.728e-4},
-             {"alspia", 37, 9.188, 1.273e-3, 2.323e-2},
-             {"mlspia", 82, 6.922, 3.110e-4, 1.010e-3},
-             {"nmlspia", 30, 8.664, 9.507e-4, 4.707e-3},
-             {"salspia", 14, 3.371, 6.246e-4, 1.231e-2},
-             {"cg", none, none, none, none}},
-            rows);
-    compare("4.5 peaks", over_grid(peaks(), 41),
-            {{"lspia", 1091, 9.942, 3.408e-4, 1.892e-3},
-             {"alspia", 15, 8.701, 7.832e-4, 1.128e-2},
-             {"mlspia", 109, 8.394, 3.248e-4, 1.862e-3},
-             {"nmlspia", 17, 8.722, 6.446e-4, 5.182e-3},
-             {"salspia", 8, 5.731, 5.827e-4, 7.983e-3},
-             {"cg", none, none, none, none}},
-            rows);
+    compare_full("4.1 blob", along_curve(blob(15001), 3001),
+                 {{"lspia", 77, 9.336, 1.073e-5, 2.552e-5},
+                  {"alspia", 6, 9.415, 2.383e-5, 1.081e-3},
+                  {"mlspia", 25, 7.338, 9.510e-6, 2.288e-5},
+                  {"nmlspia", 5, 9.739, 1.763e-5, 5.298e-4},
+                  {"salspia", 4, 8.164, 2.279e-5, 1.135e-3},
+                  {"cg", none, none, none, none}},
+                 rows);
+    compare_full("4.2 helix", along_curve(helix(2 * pi, 10001), 2001),
+                 {{"lspia", 77, 9.646, 2.084e-5, 3.836e-5},
+                  {"alspia", 7, 6.292, 3.859e-5, 1.503e-3},
+                  {"mlspia", 25, 7.736, 1.867e-5, 3.482e-5},
+                  {"nmlspia", 6, 3.595, 2.235e-5, 5.400e-4},
+                  {"salspia", 4, 9.155, 4.615e-5, 1.875e-3},
+                  {"cg", none, none, none, none}},
+                 rows);
+    compare_full("4.4 Dini", over_grid(dini(), 31),
+                 {{"lspia", 213, 9.756, 3.383e-4, 9.728e-4},
+                  {"alspia", 37, 9.188, 1.273e-3, 2.323e-2},
+                  {"mlspia", 82, 6.922, 3.110e-4, 1.010e-3},
+                  {"nmlspia", 30, 8.664, 9.507e-4, 4.707e-3},
+                  {"salspia", 14, 3.371, 6.246e-4, 1.231e-2},
+                  {"cg", none, none, none, none}},
+                 rows);
+    compare_full("4.5 peaks", over_grid(peaks(), 41),
+                 {{"lspia", 1091, 9.942, 3.408e-4, 1.892e-3},
+                  {"alspia", 15, 8.701, 7.832e-4, 1.128e-2},
+                  {"mlspia", 109, 8.394, 3.248e-4, 1.862e-3},
+                  {"nmlspia", 17, 8.722, 6.446e-4, 5.182e-3},
+                  {"salspia", 8, 5.731, 5.827e-4, 7.983e-3},
+                  {"cg", none, none, none, none}},
+                 rows);
     compare_hole("4.1 with holes", along_curve(blob(331), 101), {0.20, 0.42, 0.62, 0.82},
                  {{"lin2018", 18, 9.349, 7.273e-2, 0.18066},
                   {"alspia", 38, 9.624, 0.11878, 0.22715},

@@ -21,7 +21,7 @@ Spline scaled(const Spline& spline, double factor) {
     return {spline.axes(), scaled(spline.control_points(), factor)};
 }
 
-/// Settings that are lengths.
+/// Settings that are lengths, or as long as gradients.
 void scale(Settings& settings, double factor) {
     for (const char* name : {"t_c", "inner_tolerance", "lambda"})
         if (const auto found = settings.find(name); found != settings.end())

@@ -62,14 +62,13 @@ std::vector<double> median_lengths(const Problem& problem, std::size_t axis) {
     const Points& points = problem.samples.points;
     const GridIndex grid(problem.samples.shape());
     const Index stride = grid.stride(axis);
+    std::vector<std::vector<double>> steps(static_cast<std::size_t>(grid.length(axis)));
+    for (Index i = 0; i < points.size(); ++i)
+        if (const Index k = i / stride % grid.length(axis); k > 0)
+            steps[static_cast<std::size_t>(k)].push_back(distance(points[i], points[i - stride]));
     std::vector<double> along{0};
-    for (Index k = 1; k < grid.length(axis); ++k) {
-        std::vector<double> steps;
-        for (Index i = 0; i < points.size(); ++i)
-            if (i / stride % grid.length(axis) == k)
-                steps.push_back(distance(points[i], points[i - stride]));
-        along.push_back(along.back() + median(std::move(steps)));
-    }
+    for (std::size_t k = 1; k < steps.size(); ++k)
+        along.push_back(along.back() + median(std::move(steps[k])));
     return along;
 }
 

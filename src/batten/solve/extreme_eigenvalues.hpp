@@ -35,7 +35,7 @@ struct WorkingEigenvalues {
     bool ill_determined = false; ///< the note is there, or the smallest below 1e-6 of the largest
 };
 
-/// The extreme eigenvalues, but when the smallest is below 1e-8 of the largest, 1e-6 of the largest
+/// The extreme eigenvalues, but when the smallest is below 1e-7 of the largest, 1e-6 of the largest
 /// in its place: directions that the samples hardly determine would slow all others to their own
 /// pace. The note names them.
 WorkingEigenvalues working_eigenvalues(const NormalSystem& system, double tolerance);
