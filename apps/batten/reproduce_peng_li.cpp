@@ -85,7 +85,7 @@ struct Experiment {
     FitOptions options;
 };
 
-/// Curves: chord-length parameters, knots between them, every many-th sample as the start.
+/// Curves: chord-length parameters, knots between them, samples picked evenly as the start.
 Experiment along_curve(Samples samples, Index n) {
     const Parameters t = parametrize(samples, Parametrization::chord, {Closure::open});
     const Index m = samples.size();
