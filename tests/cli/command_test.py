@@ -275,6 +275,7 @@ class Refusals(Command):
         self.bad(2, "setting mu_1 = 0.1 of method clspia is outside ", "fit", "r.csv", "-n", 8, "--method", "clspia",
                  "--interpolate", "ends", "--set", "mu_1=0.1", prefix=True)
         self.bad(2, "unknown paper 'mlpia'; did you mean 'mlspia'?", "reproduce", "mlpia")
+        self.bad(3, "nowhere: no folder", "reproduce", "mlspia", "--data", "nowhere")
 
     def test_exact_samples(self):
         self.good("fit", "r.csv", "-n", 10, "--interpolate", "ends", "-o", "e.json", "--summary", "e_s.json")
@@ -286,7 +287,8 @@ class Refusals(Command):
 
     def test_reproduce(self):
         table = self.good("reproduce", "mlspia", "--folder", "papers")
-        self.assertRegex(table, r"Example 3, 334 control points, I +696 +696 +1\.0000")
+        self.assertRegex(table, r"334 control points, I +696 +696 +1\.0000")
+        self.assertRegex(table, r"mlspia +Table 1, Example 3 +to the digit, 14 figures")
         self.assertTrue((self.folder / "papers" / "mlspia_example3_comb.svg").exists())
         self.assertEqual(len((self.folder / "papers" / "mlspia_example3_history.csv").read_text().splitlines()), 1 + 48)
 

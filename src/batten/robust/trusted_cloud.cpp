@@ -4,7 +4,9 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace batten {
 
@@ -16,19 +18,17 @@ constexpr int terms_of(int axes, int degree) {
     return degree == 1 ? 1 + axes : 1 + axes + axes * (axes + 1) / 2;
 }
 
-/// Shortest solution of the normal equations of a polynomial whose value at the sample is wanted;
-/// nothing where they do not determine that.
-template <class Normal, class Terms>
-bool solve(const Normal& normal, Terms& at_sample) {
-    constexpr double rounding = 1e-10;
-    const Eigen::LDLT<Normal> factors(normal);
-    at_sample = Terms::Unit(0);
-    if (factors.vectorD().minCoeff() > rounding * normal(0, 0)) {
-        factors.solveInPlace(at_sample);
-        return true;
-    }
+constexpr int most_terms = terms_of(3, 2);
+// one size for all polynomials: six fixed ones take the compiler a minute and save nothing
+using Normal = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_terms, most_terms>;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_terms, 1>;
+
+constexpr double rounding = 1e-10; ///< of the number of neighbours
+
+/// The same as `solve` where some eigenvalues are 0 to working accuracy.
+bool solve_by_modes(const Normal& normal, Vector& at_sample) {
     const Eigen::SelfAdjointEigenSolver<Normal> modes(normal);
-    Terms by_mode = modes.eigenvectors().transpose() * at_sample;
+    Vector by_mode = modes.eigenvectors().transpose() * at_sample;
     double determined = 0;
     for (Eigen::Index k = 0; k < by_mode.size(); ++k) {
         if (modes.eigenvalues()(k) > rounding * normal(0, 0)) {
@@ -38,8 +38,19 @@ bool solve(const Normal& normal, Terms& at_sample) {
             by_mode(k) = 0;
         }
     }
-    at_sample = modes.eigenvectors() * by_mode;
+    at_sample.noalias() = modes.eigenvectors() * by_mode;
     return determined > 1 - rounding;
+}
+
+/// Shortest solution of the normal equations of a polynomial whose value at the sample is wanted;
+/// nothing where they do not determine that.
+bool solve(const Normal& normal, Vector& at_sample) {
+    const Eigen::LDLT<Normal> factors(normal);
+    at_sample = Vector::Unit(normal.rows(), 0);
+    if (factors.vectorD().minCoeff() <= rounding * normal(0, 0))
+        return solve_by_modes(normal, at_sample);
+    factors.solveInPlace(at_sample);
+    return true;
 }
 
 /// What least squares by a polynomial miss of a sample.
@@ -48,34 +59,38 @@ Prediction polynomial(const PointSet& points, const PointSet& places, const Metr
                       Index sample, const PlaceTree::Neighbours& neighbours,
                       std::span<double> way) {
     constexpr int terms = terms_of(axes, degree);
-    using Terms = Eigen::Matrix<double, terms, 1>;
+    using Terms = std::array<double, terms>;
     const double radius = std::sqrt(neighbours.back().square);
     const double scale = radius > 0 ? 1 / radius : 1;
     const auto terms_at = [&](Index i) {
-        Terms value;
-        value(0) = 1;
+        Terms value{1};
+        std::size_t t = 1;
         for (int d = 0; d < axes; ++d)
-            value(1 + d) =
+            value[t++] =
                 scale * metric[static_cast<std::size_t>(d)] * (places(i, d) - places(sample, d));
-        if constexpr (degree > 1) {
-            int t = 1 + axes;
-            for (int d = 0; d < axes; ++d)
-                for (int e = d; e < axes; ++e) value(t++) = value(1 + d) * value(1 + e);
-        }
+        if constexpr (degree > 1)
+            for (std::size_t d = 1; d <= axes; ++d)
+                for (std::size_t e = d; e <= axes; ++e) value[t++] = value[d] * value[e];
         return value;
     };
-    Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
+    Normal normal = Normal::Zero(terms, terms);
     for (const auto& [square, i] : neighbours) {
         const Terms value = terms_at(i);
-        normal.noalias() += value * value.transpose();
+        for (std::size_t s = 0; s < terms; ++s)
+            for (std::size_t t = 0; t < terms; ++t)
+                normal(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(s)) +=
+                    value[s] * value[t];
     }
-    Terms at_sample;
+    Vector at_sample;
     if (!solve(normal, at_sample)) return {};
+    const auto value_of = [&](const Terms& value) {
+        return std::inner_product(value.begin(), value.end(), at_sample.data(), 0.0);
+    };
     double sum_of_squares = 0;
     for (Index k = 0; k < points.dim(); ++k) {
         double off = 0;
         for (const auto& [square, i] : neighbours)
-            off += at_sample.dot(terms_at(i)) * (points(i, k) - points(sample, k));
+            off += value_of(terms_at(i)) * (points(i, k) - points(sample, k));
         if (!way.empty()) way[static_cast<std::size_t>(k)] = off;
         sum_of_squares += off * off;
     }

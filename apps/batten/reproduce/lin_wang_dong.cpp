@@ -1,0 +1,92 @@
+#include "papers.hpp"
+
+#include <batten/samples/generate.hpp>
+#include <batten/shape/polygon.hpp>
+
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <random>
+
+namespace batten::command {
+
+namespace {
+
+Samples paper_helix() {
+    PointSet q(20, 3);
+    for (Index i = 0; i < 20; ++i) {
+        const double t = 8 * std::numbers::pi * static_cast<double>(i) / 19;
+        q(i, 0) = 6 * std::cos(t);
+        q(i, 1) = 6 * std::sin(t);
+        q(i, 2) = 2 * t;
+    }
+    Samples samples;
+    samples.points = Points(std::move(q));
+    return samples;
+}
+
+/// An uneven convex polygon on which plain PIA loses convexity.
+Samples convex_polygon() {
+    std::mt19937_64 random(0);
+    std::uniform_real_distribution<double> step(0.05, 1);
+    std::vector<double> angle{0};
+    for (int i = 0; i < 11; ++i) angle.push_back(angle.back() + step(random));
+    PointSet q(12, 2);
+    for (Index i = 0; i < 12; ++i) {
+        const double a = angle[static_cast<std::size_t>(i)] / angle.back() * 1.8 * std::numbers::pi;
+        q(i, 0) = 3 * std::cos(a);
+        q(i, 1) = std::sin(a);
+    }
+    Samples samples;
+    samples.points = Points(std::move(q));
+    return samples;
+}
+
+FitOptions pia_options() {
+    FitOptions options;
+    options.method.name = "pia";
+    options.stop = {.max_iterations = 30, .relative_gradient = 0};
+    return options;
+}
+
+/// A line of Table 1: the largest deviation after 0, 2, 4, 15 and 30 steps.
+std::vector<Row> line(const FitResult& result, const std::array<const char*, 5>& printed) {
+    constexpr std::array<std::size_t, 5> steps{0, 2, 4, 15, 30};
+    std::vector<Row> rows;
+    for (std::size_t k = 0; k < steps.size(); ++k)
+        rows.push_back({fmt::format("error after {} steps", steps[k]), printed[k],
+                        result.report.history[steps[k]].max_deviation});
+    return rows;
+}
+
+} // namespace
+
+std::vector<Table> lin_wang_dong(Workshop& workshop) {
+    FitOptions options = pia_options();
+    const FitResult helix = drawn_fit(paper_helix(), options, workshop, "pia_helix", {});
+    const FitResult peaks =
+        drawn_fit(generate("peaks", {30, 30}), options, workshop, "pia_peaks", {});
+    const Samples polygon = convex_polygon();
+    const auto inflections = [](const FitResult& r) {
+        return static_cast<double>(inflection_count(r.spline.control_points()));
+    };
+    const FitResult plain = drawn_fit(polygon, options, workshop, "pia_plain", {0, 4});
+    options.hold.preserve = Preserve::convexity;
+    const FitResult convex = drawn_fit(polygon, options, workshop, "pia_convex", {0, 4});
+    return {
+        {"Table 1, Fig. 3, helix",
+         line(helix, {"1.9603", "2.8645e-1", "6.6263e-3", "3.7651e-5", "2.1624e-7"})},
+        {"Table 1, Fig. 4", {}, Data::none, "a free curve whose points are not printed"},
+        {"Table 1, Fig. 5, and the figure",
+         {{"inflections of the polygon, plain PIA", "", inflections(plain)},
+          {"the same, convexity preserved", "0", inflections(convex)}},
+         Data::stand_in,
+         "12 uneven points on an ellipse",
+         "pia_plain_*.svg, pia_convex_*.svg"},
+        {"Table 1, Fig. 6, peaks",
+         line(peaks, {"33.628", "3.5526e-1", "1.7233e-1", "1.5282e-2", "1.2695e-3"})},
+    };
+}
+
+} // namespace batten::command
