@@ -225,13 +225,34 @@ class Clspia(InFolder):
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads((self.folder / "s.json").read_text()), done.stdout
 
-    def test_the_chosen_steps_take_a_tenth_of_the_middle_ones(self):
+    def test_the_chosen_steps_take_a_third_of_scalar_ones(self):
         chosen, words = self.summary()
         self.assertNotIn("lambda:", words)
         settings = chosen["settings"]
-        low = self.summary("--set", f"mu={settings['mu'] / 5}", "--set", f"mu_1={settings['mu_1']}")[0]
-        self.assertLess(3 * chosen["iterations"], low["iterations"])
+        self.assertGreater(settings["outer_iterations"], 10)
+        printed = self.summary("--set", f"mu={1 / settings['beta_max']}", "--set", f"mu_1={settings['gamma_max']}")[0]
+        self.assertLess(3 * chosen["iterations"], printed["iterations"])
         self.assertLess(chosen["iterations"], 1000)
+
+    def exact(self, points, control, count, *arguments):
+        """What is missed of `count` exact samples, in parts of the data's size."""
+        np.save(self.folder / "q.npy", points)
+        flat = points.reshape(-1, points.shape[-1])
+        exact = np.sort(np.random.default_rng(2).choice(len(flat), count, replace=False))
+        done = subprocess.run([BATTEN, "fit", "q.npy", "-n", control, "-m", "clspia", "--interpolate", ",".join(map(str, exact)), "--summary", "s.json", *arguments],
+                              cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        goals = json.loads((self.folder / "s.json").read_text())["goals"]
+        return max(g["reached"] for g in goals if g["goal"] == "exact samples") / np.ptp(flat, axis=0).max()
+
+    def test_many_exact_samples_of_grids_and_clouds_hold_within_the_default_limit(self):
+        rng = np.random.default_rng(1)
+        height = lambda u, v: np.sin(5 * u) * np.cos(4 * v) + 0.01 * rng.normal(size=u.shape)
+        u, v = np.meshgrid(np.linspace(0, 1, 45), np.linspace(0, 1, 40), indexing="ij")
+        self.assertLess(self.exact(np.stack([u, v, height(u, v)], -1), "10x9", 60), 1e-8)
+        places = rng.random((12505, 2))
+        np.save(self.folder / "t.npy", places)
+        self.assertLess(self.exact(np.column_stack([places, height(*places.T)]), "35x30", 60, "--parameters", "t.npy"), 1e-8)
 
     def test_multipliers_that_start_elsewhere_are_noted(self):
         one, words = self.summary("--set", "lambda=1")

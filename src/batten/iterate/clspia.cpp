@@ -34,7 +34,8 @@ void Clspia::start(PointSet& control) {
 
 void Clspia::choose_inner_step() {
     const ExtremeEigenvalues gamma = extreme_eigenvalues(system_, given_.eigenvalue_tolerance);
-    mu_1_ = given_.mu_1.value_or((1 + given_.eigenvalue_tolerance) * gamma.largest);
+    gamma_max_ = (1 + given_.eigenvalue_tolerance) * gamma.largest;
+    mu_1_ = given_.mu_1.value_or((gamma.smallest + gamma_max_) / 2);
     check_setting("clspia", "mu_1", mu_1_, {.low = gamma.largest / 2}, "its region of convergence");
 }
 
@@ -46,11 +47,11 @@ void Clspia::choose_outer_step() {
         throw InvalidInput("clspia: the samples that are not interpolated do not determine every "
                            "control point; use method direct");
     }
-    const ExtremeEigenvalues beta =
-        SchurComplement(*normal, constraints_, system_.size()).eigenvalues();
-    mu_ = given_.mu.value_or(1 / beta.largest);
-    check_setting("clspia", "mu", mu_, {.low = 0, .high = 2 / beta.largest},
-                  "its region of convergence");
+    schur_ = std::make_unique<SchurComplement>(*normal, constraints_, system_.size());
+    beta_max_ = schur_->eigenvalues().largest;
+    if (given_.mu)
+        check_setting("clspia", "mu", *given_.mu, {.low = 0, .high = 2 / beta_max_},
+                      "its region of convergence");
 }
 
 PointSet Clspia::gap(const PointSet& control) const {
@@ -64,12 +65,7 @@ const PointSet& Clspia::propose(const PointSet& control) {
     largest_gap_ = largest_length(gap_);
     // where moves are limited and nothing is gained, multipliers would wind up
     if (inner_done_ && limited_ && largest_gap_ >= gap_before_) inner_done_ = false;
-    if (inner_done_) { // eq. 10, at the last control points of the inner loop
-        gap_before_ = largest_gap_;
-        add_scaled(multipliers_, mu_, gap_);
-        inner_done_ = false;
-        ++outer_;
-    }
+    if (inner_done_) move_multipliers();
     moves_ = system_.gradient(control);
     add_scaled(moves_, -1.0, constraints_.apply_transposed(multipliers_, system_.size()));
     error_ = inner_product(gap_, gap_);
@@ -78,12 +74,28 @@ const PointSet& Clspia::propose(const PointSet& control) {
     return moves_;
 }
 
+/// Eq. 10, at the last control points of the inner loop.
+void Clspia::move_multipliers() {
+    if (given_.mu)
+        add_scaled(multipliers_, *given_.mu, gap_);
+    else
+        add_scaled(multipliers_, 1.0, schur_->solve(gap_));
+    gap_before_ = largest_gap_;
+    inner_before_ = inner_;
+    inner_done_ = false;
+    ++outer_;
+}
+
+bool Clspia::enough(double largest_move) const {
+    if (given_.inner_tolerance) return largest_move <= *given_.inner_tolerance;
+    if (given_.mu || given_.mu_1) return largest_move <= 1e-2 * largest_gap_;
+    return (inner_ - inner_before_) % 2 == 0;
+}
+
 void Clspia::accept(const PointSet& moves) {
     ++inner_;
     limited_ = moves.values() != moves_.values();
-    const double part = given_.mu || given_.mu_1 ? 1e-2 : 1;
-    const double enough = given_.inner_tolerance.value_or(part * largest_gap_);
-    inner_done_ = largest_length(moves) <= enough;
+    inner_done_ = !constraints_.empty() && enough(largest_length(moves));
 }
 
 std::string Clspia::note() const {
@@ -93,10 +105,13 @@ std::string Clspia::note() const {
 }
 
 Settings Clspia::settings() const {
-    return {{"mu", mu_},
-            {"mu_1", mu_1_},
-            {"inner_iterations", static_cast<double>(inner_)},
-            {"outer_iterations", static_cast<double>(outer_)}};
+    Settings result{{"mu_1", mu_1_},
+                    {"gamma_max", gamma_max_},
+                    {"beta_max", beta_max_},
+                    {"inner_iterations", static_cast<double>(inner_)},
+                    {"outer_iterations", static_cast<double>(outer_)}};
+    if (given_.mu) result["mu"] = *given_.mu;
+    return result;
 }
 
 } // namespace batten

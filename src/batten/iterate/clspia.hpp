@@ -2,22 +2,25 @@
 
 #include <batten/iterate/method.hpp>
 #include <batten/solve/extreme_eigenvalues.hpp>
+#include <batten/solve/schur.hpp>
 #include <batten/system/constraints.hpp>
 #include <batten/system/normal_system.hpp>
 
 #include <limits>
+#include <memory>
 #include <optional>
 
 namespace batten {
 
 /// The numbers of CLSPIA; an absent one is chosen.
 struct ClspiaSettings {
-    /// Outer step, else 1 / beta_max, beta of C (A^T A)^{-1} C^T.
+    /// Outer step, in (0, 2 / beta_max), beta of S = C (A^T A)^{-1} C^T; else S^{-1}.
     std::optional<double> mu{};
-    /// The inner step is 1 / mu_1; else gamma_max, gamma of A^T A.
+    /// The inner step is 1 / mu_1, mu_1 above gamma_max / 2, gamma of A^T A; else (gamma_min +
+    /// gamma_max) / 2.
     std::optional<double> mu_1{};
-    /// The inner loop ends when max |Delta| is at most this; else the largest constraint error at
-    /// hand, where a step is stated a hundredth of it.
+    /// The inner loop ends when max |Delta| is at most this; else after two steps, where a step
+    /// factor is stated at a hundredth of the largest constraint error at hand.
     std::optional<double> inner_tolerance{};
     double eigenvalue_tolerance = default_eigenvalue_tolerance;
     /// Every component of the multipliers' start lambda^0.
@@ -28,8 +31,9 @@ struct ClspiaSettings {
 
 /// Constrained LSPIA [ChangMaDeng2023, eq. 8 to 10 and Algorithm 2]: LSPIA steps on A^T A P = A^T Q
 /// - C^T lambda until they are short, then lambda moves by mu times what the constraints lack
-/// (Uzawa). With mu_1 = gamma_max and mu = 1 / beta_max, the steps of the paper's first example, a
-/// single inner step at a time converges already [BramblePasciakVassilev1997].
+/// (Uzawa). With S^{-1} for mu the constraints are taken in the combination that makes every beta
+/// 1: however they lie, the rate is that of the inner steps, of which any even number at 2 /
+/// (gamma_min + gamma_max) will do [BramblePasciakVassilev1997].
 class Clspia : public Method {
   public:
     /// `system` without the interpolated samples; `constraints` relative to its centre,
@@ -58,12 +62,16 @@ class Clspia : public Method {
     void choose_inner_step();
     void choose_outer_step();
     PointSet gap(const PointSet& control) const;
+    void move_multipliers();
+    bool enough(double largest_move) const;
 
     const NormalSystem& system_;
     Constraints constraints_;
     double exactness_;
     ClspiaSettings given_;
-    double mu_ = 0;
+    std::unique_ptr<SchurComplement> schur_; ///< S
+    double beta_max_ = 0;
+    double gamma_max_ = 0;
     double mu_1_ = 0;
     PointSet multipliers_;
     PointSet moves_;
@@ -74,6 +82,7 @@ class Clspia : public Method {
     double error_ = 0;
     Index inner_ = 0;
     Index outer_ = 1;
+    Index inner_before_ = 0; ///< when the inner loop began
     bool inner_done_ = false;
     bool limited_ = false;
     double gap_before_ = std::numeric_limits<double>::infinity(); ///< when they last moved

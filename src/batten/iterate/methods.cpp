@@ -47,12 +47,13 @@ constexpr MethodSetting mlspia_settings[]{
 };
 
 constexpr MethodSetting clspia_settings[]{
-    {"mu", "outer step: of the multipliers", "1 / beta_max", positive,
+    {"mu", "outer step: of the multipliers",
+     "the inverse of S, beta_min to beta_max its eigenvalues", positive,
      "Chang, Ma, Deng 2023, eq. 10"},
-    {"mu_1", "inverse of the inner step: of the control points", "gamma_max", positive,
-     "Chang, Ma, Deng 2023, eq. 8"},
+    {"mu_1", "inverse of the inner step: of the control points", "(gamma_min + gamma_max) / 2",
+     positive, "Chang, Ma, Deng 2023, eq. 8"},
     {"inner_tolerance", "longest move that ends the inner loop",
-     "the largest constraint error at hand, a hundredth of it where mu or mu_1 is stated", positive,
+     "two moves; where mu or mu_1 is stated a hundredth of the largest constraint error", positive,
      "Chang, Ma, Deng 2023, Algorithm 2"},
     {"lambda", "every component of the multipliers at the start", 0.0, any_number,
      "Chang, Ma, Deng 2023, section 3.2: 1; its tables: 0"},
