@@ -13,6 +13,17 @@
 
 namespace batten::command {
 
+namespace {
+
+void print_settings(std::span<const MethodSetting> settings) {
+    for (const MethodSetting& s : settings)
+        fmt::print("                  --set {}=...  {}, {} (default {}){}\n", s.name, s.meaning,
+                   s.range.words(s.name), s.default_words(),
+                   s.source.empty() ? "" : fmt::format(" [{}]", s.source));
+}
+
+} // namespace
+
 void add_generate(CLI::App& app) {
     struct Flags {
         std::string name, size, output = "-";
@@ -51,11 +62,10 @@ void add_methods(CLI::App& app) {
         for (const Driver& entry : drivers()) {
             fmt::print("{:<18}{}{}\n", entry.name, entry.description,
                        entry.source.empty() ? "" : fmt::format(" [{}]", entry.source));
-            for (const MethodSetting& s : entry.settings)
-                fmt::print("                  --set {}=...  {}, {} (default {}){}\n", s.name,
-                           s.meaning, s.range.words(s.name), s.default_words(),
-                           s.source.empty() ? "" : fmt::format(" [{}]", s.source));
+            print_settings(entry.settings);
         }
+        fmt::print("every iteration with --preserve\n");
+        print_settings(shape_settings());
     });
 }
 

@@ -1,5 +1,6 @@
 #include <batten/drivers/iteration.hpp>
 
+#include <batten/iterate/methods.hpp>
 #include <batten/shape/limits.hpp>
 #include <batten/system/normal_system.hpp>
 
@@ -42,46 +43,68 @@ Observer recording(const FitOptions& options, const DeviationMeasure& deviation,
 }
 
 bool convex(const PointSet& control, Closure closure) {
-    const std::vector<int> signs = turn_signs(control, closure);
+    const std::vector<int> signs = turn_signs(control, closure, kept_roundings);
     const bool left = std::ranges::all_of(signs, [](int s) { return s >= 0; });
     return left || std::ranges::all_of(signs, [](int s) { return s <= 0; });
 }
 
+/// Throws InvalidInput where settings of a shape's limit are given and nothing takes them.
+void check_limit_settings(const FitOptions& options, bool by_one_factor) {
+    for (const char* name : {"alpha", "rays"}) {
+        if (!setting(options.method.settings, name)) continue;
+        if (options.hold.preserve == Preserve::nothing)
+            throw InvalidInput(fmt::format("setting {}: no shape is to be kept (preserve)", name));
+        if (by_one_factor)
+            throw InvalidInput(
+                fmt::format("setting {}: pia keeps convexity by one factor for all moves", name));
+    }
+}
+
+/// The step limit that keeps what the options want kept, none for nothing.
+StepLimit shape_limit(const FitOptions& options, Closure closure, const Departure& start,
+                      std::string_view method) {
+    const bool by_one_factor = method == "pia" && options.hold.preserve == Preserve::convexity;
+    check_limit_settings(options, by_one_factor);
+    if (options.hold.preserve == Preserve::nothing) return {};
+    if (by_one_factor)
+        return [closure](const PointSet& polygon, PointSet& moves) {
+            keep_turns(polygon, moves, closure);
+        };
+    const MethodEntry& entry = method_entry(method);
+    const Settings& given = options.method.settings;
+    const InflectionLimit limit{setting(entry, given, "alpha"),
+                                setting(entry, given, "rays") == 1 ? Barrier::rays : Barrier::lines,
+                                start.centre};
+    return [closure, limit](const PointSet& polygon, PointSet& moves) {
+        keep_inflections(polygon, moves, closure, limit);
+    };
+}
+
 } // namespace
 
-StepLimit shape_limit(Preserve preserve, const std::vector<KnotVector>& axes,
-                      const PointSet& control, std::string_view method) {
-    if (preserve == Preserve::nothing) return {};
+void check_shape(Preserve preserve, const std::vector<KnotVector>& axes, const PointSet& control) {
+    if (preserve == Preserve::nothing) return;
     if (axes.size() != 1 || control.dim() != 2)
         throw InvalidInput(fmt::format(
             "preserve: shape is kept for curves in the plane, not for {} in dimension {}",
             axes.size() == 1 ? "a curve" : "a surface or volume", control.dim()));
-    const Closure closure = axes[0].closure();
-    if (preserve == Preserve::convexity && !convex(control, closure))
+    if (preserve == Preserve::convexity && !convex(control, axes[0].closure()))
         throw InvalidInput("preserve convexity: the initial control polygon is not convex");
-    if (method == "pia" && preserve == Preserve::convexity)
-        return [closure](const PointSet& polygon, PointSet& moves) {
-            keep_turns(polygon, moves, closure);
-        };
-    return [closure](const PointSet& polygon, PointSet& moves) {
-        keep_inflections(polygon, moves, closure);
-    };
 }
 
 Course iterated(Method& method, Departure start, const std::vector<KnotVector>& axes,
                 const FitOptions& options, const DeviationMeasure& deviation) {
+    check_shape(options.hold.preserve, axes,
+                start.centre.empty() ? start.control : uncentred(start.control, start.centre));
+    const Closure closure = axes[0].closure();
+    const StepLimit limit = shape_limit(options, closure, start, method.name());
     Course course{std::move(start.control), {}};
     FitReport& report = course.report;
-    const StepLimit limit = shape_limit(options.hold.preserve, axes, course.control, method.name());
-    const auto inflections = [&] { // of the polygon where it stands: rounding can bend it
-        return inflection_count(start.centre.empty() ? course.control
-                                                     : uncentred(course.control, start.centre),
-                                axes[0].closure(), kept_roundings);
-    };
     StepLimit watched;
     double wanted = 0;
     if (limit) {
-        report.allowed_inflections = inflections();
+        report.allowed_inflections =
+            inflection_count(course.control, closure, {kept_roundings, start.centre});
         watched = [&](const PointSet& polygon, PointSet& moves) {
             wanted = largest_length(moves);
             limit(polygon, moves);
@@ -99,7 +122,6 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     report.predicted_rate = method.predicted_rate();
     report.settings = method.settings();
     if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
-    if (limit) report.inflections = inflections();
     const double rounding = std::numeric_limits<double>::epsilon() * largest_length(course.control);
     if (summary.termination == Termination::stalled && wanted > rounding) report.held_back = wanted;
     return course;

@@ -19,14 +19,12 @@ struct Departure {
 
 /// Runs a method in the one loop under the options' stop rule, observer, history and shape limit.
 /// `deviation` measures the largest deviation of a sample from absolute control points. Throws
-/// InvalidInput as shape_limit does.
+/// InvalidInput as check_shape does, and for settings of a limit that there is not.
 Course iterated(Method& method, Departure start, const std::vector<KnotVector>& axes,
                 const FitOptions& options, const DeviationMeasure& deviation);
 
-/// The step limit that keeps what the options want kept, none for nothing.
-/// Throws InvalidInput unless the spline is a planar curve, or convexity is asked of a polygon that
-/// is not convex.
-StepLimit shape_limit(Preserve preserve, const std::vector<KnotVector>& axes,
-                      const PointSet& control, std::string_view method);
+/// Throws InvalidInput unless what is to be kept can be: of a planar curve, convexity of a convex
+/// initial polygon (absolute).
+void check_shape(Preserve preserve, const std::vector<KnotVector>& axes, const PointSet& control);
 
 } // namespace batten

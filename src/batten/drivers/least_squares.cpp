@@ -117,14 +117,12 @@ Course solved_in_shape(const Equations& equations, const Problem& problem) {
     const HoldOptions& hold = problem.options.hold;
     const PointSet initial = initial_control(problem.samples, problem.parameters, equations.axes,
                                              problem.options.method);
-    shape_limit(hold.preserve, equations.axes, initial, "direct"); // refuses what has none
-    const Closure closure = equations.axes[0].closure();
-    const Index most =
-        hold.preserve == Preserve::convexity ? 0 : inflection_count(initial, closure);
+    check_shape(hold.preserve, equations.axes, initial);
+    const Index most = hold.preserve == Preserve::convexity
+                           ? 0
+                           : inflection_count(initial, equations.axes[0].closure(), kept_roundings);
     Course course{solve_with_inflections(*equations.system, equations.held, most), {}};
-    course.report.inflections = inflection_count(course.control, closure);
     course.report.allowed_inflections = most;
-    if (course.report.inflections > most) course.report.termination = Termination::stalled;
     return course;
 }
 

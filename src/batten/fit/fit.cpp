@@ -5,6 +5,7 @@
 #include <batten/fit/account.hpp>
 #include <batten/fit/rescale.hpp>
 #include <batten/fit/reweight.hpp>
+#include <batten/fit/written_shape.hpp>
 #include <batten/measure/deviation.hpp>
 #include <batten/problem/subset.hpp>
 #include <batten/robust/outliers.hpp>
@@ -59,6 +60,7 @@ FitResult solved(const Problem& problem, double problem_seconds) {
     const Choice choice = choose(problem);
     const double choice_seconds = watch.lap();
     Fitted fitted = answered(problem, choice);
+    keep_as_written(fitted);
     problem.stop_if_cancelled();
     watch.lap();
     FitResult result = accounted(std::move(fitted), problem);

@@ -101,6 +101,13 @@ constexpr MethodSetting alspia_settings[]{
     eigenvalue_setting,
 };
 
+constexpr MethodSetting of_kept_shape[]{
+    {"alpha", "part of the way to a line through its neighbours that a control point may go", 0.8,
+     SettingRange{0, 1, open, open}, "Chang, Ma, Deng 2023, section 4.4"},
+    {"rays", "1: only the rays that are printed stop it, and turns do change sign", 0.0, switched,
+     "Chang, Ma, Deng 2023, section 4.4"},
+};
+
 constexpr MethodEntry table[]{
     {"auto", "the fastest that answers the question", "", {}},
     {"search", "the fewest control points within a tolerance", "", {}},
@@ -129,10 +136,16 @@ constexpr MethodEntry table[]{
      {}},
 };
 
+bool iterates(const MethodEntry& entry) {
+    return entry.name != "auto" && entry.name != "search" && entry.name != "direct";
+}
+
 /// The method's setting of that name, nullptr when it has none.
 const MethodSetting* find(const MethodEntry& entry, std::string_view name) {
-    const auto at = std::ranges::find(entry.settings, name, &MethodSetting::name);
-    return at == entry.settings.end() ? nullptr : &*at;
+    const auto own = std::ranges::find(entry.settings, name, &MethodSetting::name);
+    if (own != entry.settings.end()) return &*own;
+    const auto shape = std::ranges::find(of_kept_shape, name, &MethodSetting::name);
+    return iterates(entry) && shape != std::end(of_kept_shape) ? shape : nullptr;
 }
 
 Preconditioner preconditioner(const MethodEntry& entry, const Settings& settings) {
@@ -160,6 +173,10 @@ std::span<const MethodEntry> methods() {
     return table;
 }
 
+std::span<const MethodSetting> shape_settings() {
+    return of_kept_shape;
+}
+
 const MethodEntry& method_entry(std::string_view name) {
     std::vector<std::string_view> names;
     for (const MethodEntry& entry : table) {
@@ -173,10 +190,10 @@ void check_settings(const MethodEntry& entry, const Settings& settings) {
     std::vector<std::string_view> names;
     for (const MethodSetting& s : entry.settings) names.push_back(s.name);
     for (const auto& [name, value] : settings) {
-        if (names.empty())
+        const MethodSetting* known = find(entry, name);
+        if (known == nullptr && names.empty())
             throw InvalidInput(
                 fmt::format("method {} has no settings, got '{}'", entry.name, name));
-        const MethodSetting* known = find(entry, name);
         if (known == nullptr)
             throw InvalidInput(
                 unknown_name(fmt::format("setting of method {}", entry.name), name, names));

@@ -21,6 +21,9 @@ struct MethodEntry {
 /// Everything that can be asked for by name, with its settings.
 std::span<const MethodEntry> methods();
 
+/// The settings that every iteration has besides its own: how it keeps a shape.
+std::span<const MethodSetting> shape_settings();
+
 /// The entry of a method; throws InvalidInput for an unknown name (the nearest is suggested).
 const MethodEntry& method_entry(std::string_view name);
 

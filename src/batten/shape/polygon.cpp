@@ -3,8 +3,10 @@
 #include <batten/core/vectors.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace batten {
 
@@ -38,31 +40,73 @@ void for_each_turn(const PointSet& polygon, Closure closure, Visit visit) {
         visit(polygon[kept[i]], polygon[kept[(i + 1) % n]], polygon[kept[(i + 2) % n]]);
 }
 
+/// A sum of doubles without rounding: parts that do not overlap, in ascending size
+/// [Shewchuk1997, theorem 10].
+class ExactSum {
+  public:
+    void add(double x) {
+        std::size_t left = 0;
+        for (std::size_t k = 0; k < count_; ++k) {
+            const double part = parts_[k];
+            const double sum = x + part;
+            const double of_part = sum - x;
+            const double lost = (x - (sum - of_part)) + (part - of_part);
+            if (lost != 0) parts_[left++] = lost;
+            x = sum;
+        }
+        if (x != 0) parts_[left++] = x;
+        count_ = left;
+    }
+    void add_product(double x, double y) {
+        const double product = x * y;
+        add(std::fma(x, y, -product));
+        add(product);
+    }
+    int sign() const { return count_ == 0 ? 0 : parts_[count_ - 1] > 0 ? 1 : -1; }
+
+  private:
+    std::array<double, 12> parts_{}; ///< of six products
+    std::size_t count_ = 0;
+};
+
+/// Sign of the turn at b as the doubles stand, for products within the range of doubles.
+int exact_turn_sign(std::span<const double> a, std::span<const double> b,
+                    std::span<const double> c) {
+    ExactSum sum;
+    for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+        sum.add_product(p[0], q[1]);
+        sum.add_product(-p[1], q[0]);
+    }
+    return sum.sign();
+}
+
 } // namespace
 
 int turn_sign(std::span<const double> a, std::span<const double> b, std::span<const double> c,
-              double roundings) {
+              const TurnMargin& margin) {
+    if (margin.roundings == exactly) return exact_turn_sign(a, b, c);
     const double t = turn(a, b, c);
     double largest = 0;
     double lengths = 0;
     for (std::size_t d = 0; d < 2; ++d) {
-        largest = std::max({largest, std::abs(a[d]), std::abs(b[d]), std::abs(c[d])});
+        const double shift = margin.centre.empty() ? 0 : margin.centre[d];
+        for (const auto& p : {a, b, c}) largest = std::max(largest, std::abs(p[d] + shift));
         lengths += std::abs(b[d] - a[d]) + std::abs(c[d] - b[d]);
     }
     const double rounding = std::numeric_limits<double>::epsilon() * largest * lengths;
-    if (std::abs(t) <= roundings * rounding) return 0;
+    if (std::abs(t) <= margin.roundings * rounding) return 0;
     return t > 0 ? 1 : -1;
 }
 
-std::vector<int> turn_signs(const PointSet& polygon, Closure closure, double roundings) {
+std::vector<int> turn_signs(const PointSet& polygon, Closure closure, const TurnMargin& margin) {
     std::vector<int> signs;
     for_each_turn(polygon, closure,
-                  [&](auto a, auto b, auto c) { signs.push_back(turn_sign(a, b, c, roundings)); });
+                  [&](auto a, auto b, auto c) { signs.push_back(turn_sign(a, b, c, margin)); });
     return signs;
 }
 
-Index inflection_count(const PointSet& polygon, Closure closure, double roundings) {
-    std::vector<int> signs = turn_signs(polygon, closure, roundings);
+Index inflection_count(const PointSet& polygon, Closure closure, const TurnMargin& margin) {
+    std::vector<int> signs = turn_signs(polygon, closure, margin);
     std::erase(signs, 0);
     Index count = 0;
     for (std::size_t i = 1; i < signs.size(); ++i) count += signs[i] != signs[i - 1] ? 1 : 0;
@@ -78,19 +122,18 @@ double total_turning(const PointSet& polygon, Closure closure) {
     return sum;
 }
 
-bool keeps_shape(const PointSet& polygon, const PointSet& moved, Closure closure, double roundings,
-                 double bend) {
+bool keeps_shape(const PointSet& polygon, const PointSet& moved, Closure closure,
+                 const TurnMargin& margin, double bend) {
     const Index n = polygon.size();
-    const auto sign = [&](const PointSet& of, Index i, double certain) {
+    const auto sign = [&](const PointSet& of, Index i, const TurnMargin& certain) {
         return turn_sign(of[i], of[(i + 1) % n], of[(i + 2) % n], certain);
     };
     for (Index i = 0; i < (closure == Closure::closed ? n : n - 2); ++i) {
-        const int before = sign(polygon, i, roundings);
-        if (sign(moved, i, roundings) != before && (before != 0 || sign(moved, i, bend) == 0))
+        const int before = sign(polygon, i, margin);
+        if (sign(moved, i, margin) != before && (before != 0 || sign(moved, i, bend) == 0))
             return false;
     }
-    return inflection_count(moved, closure, roundings) <=
-           inflection_count(polygon, closure, roundings);
+    return inflection_count(moved, closure, margin) <= inflection_count(polygon, closure, margin);
 }
 
 } // namespace batten

@@ -33,5 +33,23 @@ TEST(TurnSigns, of_a_circle_hold_at_any_offset_that_shows_them) {
         EXPECT_EQ(turn_signs(shifted(circle, by)), std::vector<int>(18, 1)) << by;
 }
 
+TEST(TurnSigns, are_exact_where_they_are_asked_to_be) {
+    // a turn at a point of the diagonal, after one some ulps beside it
+    const double ulp = std::ldexp(1.0, -53);
+    int wrong = 0;
+    for (int x = 0; x < 64; ++x)
+        for (int y = 0; y < 64; ++y) {
+            const std::array p{0.5 + x * ulp, 0.5 + y * ulp};
+            const std::array q{12.0, 12.0};
+            const std::array r{24.0, 24.0};
+            const int truth = (p[1] > p[0]) - (p[1] < p[0]);
+            EXPECT_EQ(turn_sign(p, q, r, exactly), truth);
+            EXPECT_EQ(turn_sign(r, q, p, exactly), -truth);
+            const double t = turn(p, q, r);
+            wrong += ((t > 0) - (t < 0)) != truth ? 1 : 0;
+        }
+    EXPECT_GT(wrong, 100); // in doubles
+}
+
 } // namespace
 } // namespace batten

@@ -152,10 +152,12 @@ void watch_wrong(const Turns& turns, const std::vector<int>& signs, std::vector<
 }
 
 /// One quadratic program: the best fit's control points moved so that the watched turns, linearised
-/// around `around`, have their signs.
+/// around `around`, have their signs where coordinates are as large as `largest`.
 PointSet with_signs(const PointSet& best, const PointSet& around, const std::vector<int>& signs,
-                    const std::vector<Index>& watched, const Response& response, bool closed) {
-    constexpr double margin = 1e-7; // of the squared mean leg: a turn that counts as bent
+                    const std::vector<Index>& watched, const Response& response, bool closed,
+                    double largest) {
+    constexpr double bent = 1e-7; // of the squared legs: a turn that counts as bent
+    const double written = 8 * kept_roundings * std::numeric_limits<double>::epsilon() * largest;
     const Turns turns{around, closed};
     const auto count = static_cast<Index>(watched.size());
     PointSet pull_x(around.size(), count);
@@ -177,7 +179,7 @@ PointSet with_signs(const PointSet& best, const PointSet& around, const std::vec
             pull_y(at[v], w) += scale * gy[v];
             here += gx[v] * (best(at[v], 0) - p(at[v], 0)) + gy[v] * (best(at[v], 1) - p(at[v], 1));
         }
-        missing[w] = margin - scale * here;
+        missing[w] = std::max(bent, written / legs) - scale * here;
     }
     const PointSet moves_x = response(pull_x);
     const PointSet moves_y = response(pull_y);
@@ -206,7 +208,9 @@ PointSet solve_with_inflections(const NormalSystem& system, const Constraints& g
     const PointSet best = solve_direct(system, constraints);
     const Closure closure = system.axes()[0].closure();
     const bool closed = closure == Closure::closed;
-    if (inflection_count(best, closure) <= most_inflections) return best;
+    const TurnMargin kept(kept_roundings, system.centre());
+    if (inflection_count(best, closure, kept) <= most_inflections) return best;
+    const double largest = largest_length(uncentred(best, system.centre()));
     const std::vector<int> signs = nearest_signs({best, closed}, most_inflections);
     const Response response(system, constraints);
     PointSet polygon = best;
@@ -214,8 +218,8 @@ PointSet solve_with_inflections(const NormalSystem& system, const Constraints& g
     constexpr int most_programs = 16;
     for (int round = 0; round < most_programs; ++round) {
         watch_wrong({polygon, closed}, signs, watched);
-        polygon = with_signs(best, polygon, signs, watched, response, closed);
-        if (inflection_count(polygon, closure) <= most_inflections) break;
+        polygon = with_signs(best, polygon, signs, watched, response, closed, largest);
+        if (inflection_count(polygon, closure, kept) <= most_inflections) break;
     }
     return response.exact(std::move(polygon));
 }
