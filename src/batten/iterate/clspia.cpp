@@ -1,11 +1,14 @@
 #include <batten/iterate/clspia.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/solve/schur.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace batten {
 
@@ -26,6 +29,9 @@ void Clspia::start(PointSet& control) {
     choose_inner_step();
     if (!constraints_.empty()) choose_outer_step();
     multipliers_.fill(given_.lambda);
+    const auto count = static_cast<std::size_t>(constraints_.size());
+    cut_off_.assign(count, false);
+    gap_before_.assign(count, std::numeric_limits<double>::infinity());
     for (Index k = 0; k < given_.warm_start; ++k)
         add_scaled(control, 1 / mu_1_, system_.gradient(control));
     reference_ =
@@ -63,9 +69,11 @@ PointSet Clspia::gap(const PointSet& control) const {
 const PointSet& Clspia::propose(const PointSet& control) {
     gap_ = gap(control);
     largest_gap_ = largest_length(gap_);
-    // where moves are limited and nothing is gained, multipliers would wind up
-    if (inner_done_ && limited_ && largest_gap_ >= gap_before_) inner_done_ = false;
-    if (inner_done_) move_multipliers();
+    if (inner_done_ && move_multipliers()) {
+        inner_before_ = inner_;
+        inner_done_ = false;
+        ++outer_;
+    }
     moves_ = system_.gradient(control);
     add_scaled(moves_, -1.0, constraints_.apply_transposed(multipliers_, system_.size()));
     error_ = inner_product(gap_, gap_);
@@ -74,16 +82,21 @@ const PointSet& Clspia::propose(const PointSet& control) {
     return moves_;
 }
 
-/// Eq. 10, at the last control points of the inner loop.
-void Clspia::move_multipliers() {
-    if (given_.mu)
-        add_scaled(multipliers_, *given_.mu, gap_);
-    else
-        add_scaled(multipliers_, 1.0, schur_->solve(gap_));
-    gap_before_ = largest_gap_;
-    inner_before_ = inner_;
-    inner_done_ = false;
-    ++outer_;
+/// Eq. 10, at the last control points of the inner loop; of a constraint whose moves are cut off
+/// only when its gap has become less, else the multiplier would wind up. Whether any moved.
+bool Clspia::move_multipliers() {
+    const PointSet steps = given_.mu ? gap_ : schur_->solve(gap_);
+    bool moved = false;
+    for (Index j = 0; j < gap_.size(); ++j) {
+        const auto k = static_cast<std::size_t>(j);
+        const double length = norm(gap_[j]);
+        if (cut_off_[k] && length >= gap_before_[k]) continue;
+        gap_before_[k] = length;
+        for (std::size_t d = 0; d < gap_[j].size(); ++d)
+            multipliers_[j][d] += given_.mu.value_or(1) * steps[j][d];
+        moved = true;
+    }
+    return moved;
 }
 
 bool Clspia::enough(double largest_move) const {
@@ -94,7 +107,15 @@ bool Clspia::enough(double largest_move) const {
 
 void Clspia::accept(const PointSet& moves) {
     ++inner_;
-    limited_ = moves.values() != moves_.values();
+    cut_off_.assign(cut_off_.size(), false);
+    if (moves.values() != moves_.values()) { // a shape is kept
+        constexpr double most = 0.5;         // of what they would do to the gap
+        const PointSet wanted = constraints_.apply(moves_);
+        PointSet lost = wanted;
+        add_scaled(lost, -1.0, constraints_.apply(moves));
+        for (Index j = 0; j < lost.size(); ++j)
+            cut_off_[static_cast<std::size_t>(j)] = norm(lost[j]) > most * norm(wanted[j]);
+    }
     inner_done_ = !constraints_.empty() && enough(largest_length(moves));
 }
 

@@ -6,9 +6,9 @@
 #include <batten/system/constraints.hpp>
 #include <batten/system/normal_system.hpp>
 
-#include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace batten {
 
@@ -61,8 +61,8 @@ class Clspia : public Method {
   private:
     void choose_inner_step();
     void choose_outer_step();
+    bool move_multipliers();
     PointSet gap(const PointSet& control) const;
-    void move_multipliers();
     bool enough(double largest_move) const;
 
     const NormalSystem& system_;
@@ -84,8 +84,8 @@ class Clspia : public Method {
     Index outer_ = 1;
     Index inner_before_ = 0; ///< when the inner loop began
     bool inner_done_ = false;
-    bool limited_ = false;
-    double gap_before_ = std::numeric_limits<double>::infinity(); ///< when they last moved
+    std::vector<bool> cut_off_{};      ///< constraints that the moves made did little for
+    std::vector<double> gap_before_{}; ///< lengths when the multipliers last moved
 };
 
 } // namespace batten

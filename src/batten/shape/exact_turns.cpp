@@ -40,24 +40,25 @@ std::vector<Run> straight_runs(const std::vector<int>& signs, std::size_t points
     return runs;
 }
 
-/// Puts the points inside a run on a parabola over its chord, `height` high; whether they follow
-/// each other along it.
-bool bow(PointSet& points, const Run& run, double height) {
+/// Puts the points inside a run on a parabola over its chord, `height` high, where they follow each
+/// other along it.
+void bow(PointSet& points, const Run& run, double height) {
     const auto at = [&](std::size_t i) { return points[static_cast<Index>(i) % points.size()]; };
     const std::vector<double> a(at(run.first).begin(), at(run.first).end());
     const std::vector<double> d = difference(at(run.last), a);
     const double square = dot(d, d);
-    double before = 0;
-    for (std::size_t i = run.first + 1; i < run.last; ++i) {
-        const double u = dot(difference(at(i), a), d) / square;
-        if (!(u > before && u < 1)) return false;
-        before = u;
+    std::vector<double> along{0};
+    for (std::size_t i = run.first + 1; i <= run.last; ++i) {
+        along.push_back(i < run.last ? dot(difference(at(i), a), d) / square : 1);
+        if (!(along.back() > along[along.size() - 2])) return;
+    }
+    for (std::size_t k = 1; k + 1 < along.size(); ++k) {
+        const double u = along[k];
         // to the right of the chord for turns to the left
         const double off = run.sign * height * 4 * u * (1 - u) / std::sqrt(square);
-        at(i)[0] = a[0] + u * d[0] + off * d[1];
-        at(i)[1] = a[1] + u * d[1] - off * d[0];
+        at(run.first + k)[0] = a[0] + u * d[0] + off * d[1];
+        at(run.first + k)[1] = a[1] + u * d[1] - off * d[0];
     }
-    return true;
 }
 
 /// A polygon without points that are the one before but for rounding, and where each of all points
@@ -106,10 +107,9 @@ PointSet with_exact_turns(const PointSet& polygon, Closure closure, Index most) 
         if (inflection_count(points, closure, straight) > most) continue;
         const std::vector<Run> runs =
             straight_runs(turn_signs(points, closure, straight), n, closed);
-        for (double roundings = 1; roundings <= 1 << 16; roundings *= 2) {
+        for (double roundings = 1; roundings <= 1 << 20; roundings *= 2) {
             PointSet bent = points;
-            const auto bows = [&](const Run& run) { return bow(bent, run, roundings * rounding); };
-            if (!std::ranges::all_of(runs, bows)) break;
+            for (const Run& run : runs) bow(bent, run, roundings * rounding);
             if (inflection_count(bent, closure, exactly) > most) continue;
             PointSet result = polygon;
             for (Index i = 0; i < polygon.size(); ++i)

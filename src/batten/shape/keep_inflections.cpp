@@ -74,8 +74,8 @@ class MovingPolygon {
         return count;
     }
     int sign(Index i) const { return sign(i, kept_); }
-    /// How often the polygon comes straight back on itself at i and beside it.
-    int folds_beside(Index i) const { return folds(i - 1) + folds(i) + folds(i + 1); }
+    /// How many straight turns at i and beside it are crowded.
+    int crowds_beside(Index i) const { return crowds(i - 1) + crowds(i) + crowds(i + 1); }
 
   private:
     int sign(Index i, const TurnMargin& margin) const {
@@ -83,9 +83,9 @@ class MovingPolygon {
         if (!a || !b || !c) return 0;
         return turn_sign(*a, *b, *c, margin);
     }
-    int folds(Index i) const {
+    int crowds(Index i) const {
         const auto a = at(i - 1), b = at(i), c = at(i + 1);
-        return a && b && c && sign(i) == 0 && dot(*b - *a, *c - *b) < 0 ? 1 : 0;
+        return a && b && c && sign(i) == 0 && crowded(*a, *b, *c) ? 1 : 0;
     }
     /// Sign of the first turn from i on that bends.
     int nearest(Index i, Index step) const {
@@ -156,19 +156,19 @@ class Limiter {
     }
 
     /// Whether point i may move so: the turns at i and beside it have their signs; those without
-    /// one have none and do not fold, or bend distinctly and not to and fro.
+    /// one have none and are not crowded, or bend distinctly and not to and fro.
     bool goes(Index i, const Point& p, const Point& move) {
         const std::array<int, 3> before = moved_.turns(i);
         const int bends = moved_.bends(i);
-        const int folds = moved_.folds_beside(i);
+        const int crowds = moved_.crowds_beside(i);
         moved_.put(i, along(p, move, 1));
         const std::array<int, 3> now = moved_.turns(i);
         bool good = true;
         for (std::size_t k = 0; k < now.size(); ++k)
             good = good && (now[k] == before[k] ||
                             (before[k] == 0 && moved_.distinct(i - 1 + static_cast<Index>(k))));
-        good =
-            good && (now == before || moved_.bends(i) <= bends) && moved_.folds_beside(i) <= folds;
+        good = good && (now == before || moved_.bends(i) <= bends) &&
+               moved_.crowds_beside(i) <= crowds;
         moved_.put(i, p);
         return good;
     }

@@ -98,6 +98,12 @@ int turn_sign(std::span<const double> a, std::span<const double> b, std::span<co
     return t > 0 ? 1 : -1;
 }
 
+bool crowded(std::span<const double> a, std::span<const double> b, std::span<const double> c) {
+    constexpr double least = 1e-3;
+    const auto [shorter, longer] = std::minmax({distance(a, b), distance(b, c)});
+    return shorter <= least * longer || dot(difference(b, a), difference(c, b)) < 0;
+}
+
 std::vector<int> turn_signs(const PointSet& polygon, Closure closure, const TurnMargin& margin) {
     std::vector<int> signs;
     for_each_turn(polygon, closure,
@@ -129,9 +135,13 @@ bool keeps_shape(const PointSet& polygon, const PointSet& moved, Closure closure
         return turn_sign(of[i], of[(i + 1) % n], of[(i + 2) % n], certain);
     };
     for (Index i = 0; i < (closure == Closure::closed ? n : n - 2); ++i) {
+        const auto crowds = [&](const PointSet& of) {
+            return crowded(of[i], of[(i + 1) % n], of[(i + 2) % n]);
+        };
         const int before = sign(polygon, i, margin);
-        if (sign(moved, i, margin) != before && (before != 0 || sign(moved, i, bend) == 0))
-            return false;
+        const int now = sign(moved, i, margin);
+        if (now != before && (before != 0 || sign(moved, i, bend) == 0)) return false;
+        if (now == 0 && crowds(moved) && !crowds(polygon)) return false;
     }
     return inflection_count(moved, closure, margin) <= inflection_count(polygon, closure, margin);
 }

@@ -36,6 +36,10 @@ inline constexpr double exactly = 0;
 int turn_sign(std::span<const double> a, std::span<const double> b, std::span<const double> c,
               const TurnMargin& margin = {});
 
+/// Whether three points of a line do not follow each other along it: c is back from b, or one is a
+/// thousand times nearer to b than the other is, where a little turn at b would not be seen.
+bool crowded(std::span<const double> a, std::span<const double> b, std::span<const double> c);
+
 /// Signs (-1, 1, or 0 where a turn does not count) of the turns of a planar polygon, after
 /// consecutive equal points are taken as one: the directional angles of [LinWangDong2004, section
 /// 1.3]. Closed: the turns over the seam count.
@@ -51,8 +55,8 @@ Index inflection_count(const PointSet& polygon, Closure closure = Closure::open,
 double total_turning(const PointSet& polygon, Closure closure = Closure::open);
 
 /// Whether a polygon whose points have moved still has its shape: turns that count have their
-/// signs, what was straight is so or bends by more than `bend` roundings, and there are no more
-/// inflections than before.
+/// signs, what was straight is so and is not crowded, or bends by more than `bend` roundings,
+/// and there are no more inflections than before.
 bool keeps_shape(const PointSet& polygon, const PointSet& moved, Closure closure,
                  const TurnMargin& margin, double bend);
 
