@@ -54,7 +54,7 @@ Table line(const Example& example, const std::vector<std::size_t>& steps, const 
     const auto exact = static_cast<double>(options.hold.interpolate.size());
     const std::string stem = fmt::format("{}{}", kind, errors.size() + 1);
     const FitResult result = drawn_fit(samples, options, workshop, stem, {0, 1, 3, 7});
-    Series series{example.name, {}};
+    Series series{example.name.substr(example.name.find(", ") + 2), {}}; // behind "Table 1, "
     for (const HistoryEntry& h : result.report.history)
         series.values.push_back(h.constraint_error / exact);
     Table table{example.name, {}};

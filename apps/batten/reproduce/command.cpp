@@ -74,7 +74,7 @@ void add_reproduce(CLI::App& app) {
     CLI::App* sub =
         app.add_subcommand("reproduce", "The papers' tables, published beside computed");
     auto flags = std::make_shared<Flags>();
-    sub->add_option("PAPER", flags->paper, "pia, epia, mlspia, clspia, salspia or all")
+    sub->add_option("PAPER", flags->paper, "pia, epia, mlspia, clspia, salspia, race or all")
         ->capture_default_str();
     sub->add_option("--folder", flags->folder, "Where figures and histories go")
         ->capture_default_str();

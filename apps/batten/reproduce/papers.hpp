@@ -45,6 +45,8 @@ std::vector<Table> lin_zhang(Workshop& workshop);
 std::vector<Table> huang_wang(Workshop& workshop);
 std::vector<Table> chang_ma_deng(Workshop& workshop);
 std::vector<Table> peng_li(Workshop& workshop);
+/// All iterations on ten problems.
+std::vector<Table> race(Workshop& workshop);
 
 /// Fits with history; draws the history, the steps asked for, the limit and its curvature comb, all
 /// under names that begin with `stem`.
