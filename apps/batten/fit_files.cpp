@@ -35,6 +35,7 @@ std::vector<FileUse> inputs_of(const FitFlags& flags) {
     for (const std::string& path : flags.parameters) add("--parameters", path);
     add("--knots", flags.knots, {"data", "uniform"});
     add("--initial", flags.initial, {"data", "zero"});
+    add("--before", flags.before);
     add("--corners", flags.corners, {"auto", "none"});
     add("--interpolate", flags.interpolate, {"ends"});
     add("--moving", flags.moving);

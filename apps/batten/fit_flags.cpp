@@ -65,6 +65,11 @@ void add_method_flags(CLI::App& fit, FitFlags& flags) {
                    "data, zero, or a file of control points or a spline .json")
         ->group("Method")
         ->capture_default_str();
+    fit.add_option(
+           "--before", flags.before,
+           "File of the control points one iteration before --initial, or the spline .json: "
+           "a method with memory goes on")
+        ->group("Method");
     fit.add_option("--set", flags.set, "The method's own numbers: name=value")->group("Method");
     fit.add_option("--moving", flags.moving, "Local PIA: only these control points move: 3,4,5")
         ->group("Method");

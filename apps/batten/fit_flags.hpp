@@ -29,6 +29,7 @@ struct FitFlags {
     std::string knots;
     std::string method = "auto";
     std::string initial = "data";
+    std::string before;
     std::vector<std::string> set;
     Index max_iterations = StopRule{}.max_iterations;
     double stop_gradient = 0;

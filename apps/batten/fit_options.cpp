@@ -132,10 +132,18 @@ MethodOptions method_options(const FitFlags& flags) {
         method.initial = Initial::zero;
     } else if (flags.initial != "data") {
         method.initial = Initial::given;
-        method.control = extension(flags.initial) == ".json"
-                             ? read({flags.initial}).free_control_points()
-                             : read_table(flags.initial);
+        if (extension(flags.initial) == ".json") {
+            const Spline start = read({flags.initial});
+            method.control = start.free_control_points();
+            method.control_axes = start.axes();
+        } else {
+            method.control = read_table(flags.initial);
+        }
     }
+    if (!flags.before.empty())
+        method.before = extension(flags.before) == ".json"
+                            ? read({flags.before}).free_control_points()
+                            : read_table(flags.before);
     return method;
 }
 

@@ -205,7 +205,7 @@ class Sameness(Files):
             return self.write(name, "\n".join(map(str, rows)) + "\n")
         ones = file("ones.txt", [1] * 60)
         cases = {"--weights": ones, "--tolerances": ones, "--parameters": file("t.txt", np.linspace(0, 1, 60)),
-                 "--knots": "s.json", "--initial": "s.json", "--corners": file("c.txt", [30]), "--interpolate": file("i.txt", [0, 59]),
+                 "--knots": "s.json", "--initial": "s.json", "--before": "s.json", "--corners": file("c.txt", [30]), "--interpolate": file("i.txt", [0, 59]),
                  "--moving": file("m.txt", [3]), "--tangents": file("d.txt", ["0 1 0"]), "--derivatives": file("e.txt", ["0 1 0"])}
         for flag, name in cases.items():
             with self.subTest(flag):
@@ -442,7 +442,7 @@ class Readers(Files):
         for word in ("nan", "inf", "-inf"):
             table = self.write("t.txt", f"0.5\n{word}\n")
             self.bad(3, f"t.txt: row 1: {word} is not a finite number", "evaluate", "s.json", "--parameters", table)
-            for flag in ("--weights", "--tolerances", "--parameters", "--knots", "--initial", "--interpolate", "--tangents"):
+            for flag in ("--weights", "--tolerances", "--parameters", "--knots", "--initial", "--before", "--interpolate", "--tangents"):
                 self.bad(3, f"t.txt: row 1: {word} is not a finite number", "fit", "p.csv", *([] if flag in ("--tolerances", "--knots") else ["-n", 8]),
                          flag, table)
         spline = json.loads(self.read("s.json"))

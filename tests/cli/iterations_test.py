@@ -5,7 +5,7 @@ import subprocess
 import unittest
 
 import numpy as np
-from scipy.interpolate import BSpline
+from scipy.interpolate import BSpline, insert
 
 from judge import BATTEN, GUARD, InFolder, some, shared
 
@@ -78,15 +78,38 @@ def lin2018(normal, control, steps):
     return by_factors(normal, control, steps, lambda k: 1 / normal.sums[:, None])
 
 
-def nmlspia(normal, control, steps):
+def nmlspia(normal, control, steps, before=None):
     low, high = np.sqrt(normal.eigenvalues[[0, -1]])
-    before, norms = control, []
+    before, norms = control if before is None else before, []
     for k in range(steps + 1):
         norms.append(np.linalg.norm(normal.gradient(control)))
         if k < steps:
             ahead = control + (high - low) / (high + low) * (control - before)
             before, control = control, ahead + normal.gradient(ahead) / high ** 2
     return control, norms
+
+
+def mlspia(normal, control, steps, first=None, before=None):
+    """[Huang, Wang 2020, eq. 1 to 3 with 27], without the samples: Delta = nu A^T Lambda."""
+    low, high = np.sqrt(normal.eigenvalues[[0, -1]])
+    omega, nu = 4 * high * low / (high + low) ** 2, 1 / (high * low)
+    move = None if before is None else control - before
+    for _ in range(steps):
+        delta = nu * normal.gradient(control)
+        move = (omega if first is None else first) * delta if move is None else (1 - omega) * move + omega * delta
+        control = control + move
+    return control, []
+
+
+def chebyshev(normal, control, steps):
+    low, high = normal.eigenvalues[[0, -1]] * [1 - 1e-12, 1 + 1e-12]
+    middle, radius = (high + low) / 2, (high - low) / 2
+    move, rho = normal.gradient(control) / middle, radius / middle
+    for _ in range(steps):
+        control = control + move
+        following = 1 / (2 * middle / radius - rho)
+        move, rho = 2 * following / radius * normal.gradient(control) + following * rho * move, following
+    return control, []
 
 
 FORMULAS = {"salspia": salspia, "alspia": alspia, "nmlspia": nmlspia, "lin2018": lin2018}
@@ -175,17 +198,112 @@ class Iterations(InFolder):
             self.assertTrue((control[~seen] == 0).all(), method)
             self.assertLess(np.linalg.norm(matrix.T @ (points - matrix @ control)), 1e-7, method)
 
-    def test_lspia_over_a_hole_takes_steps_that_get_somewhere(self):
+    def singular_problems(self):
+        """Name, samples, arguments and the matrix of problems whose samples leave directions open."""
+        rng = np.random.default_rng(1)
+        knots = lambda n: np.r_[np.zeros(3), np.linspace(0, 1, n - 2), np.ones(3)]
         t = np.r_[np.linspace(0, 0.4, 300), np.linspace(0.6, 1, 200)]
-        points = np.column_stack([np.cos(4 * t), np.sin(6 * t)]) + 0.001 * np.random.default_rng(1).normal(size=(500, 2))
-        knots = np.r_[np.zeros(3), np.linspace(0, 1, 60), np.ones(3)]
+        np.savetxt(self.folder / "k.txt", knots(62), fmt="%.17g")
         np.save(self.folder / "t.npy", t)
-        np.savetxt(self.folder / "k.txt", knots, fmt="%.17g")
-        matrix = design(knots, 3, t)
-        best = np.linalg.norm(points - matrix @ np.linalg.lstsq(matrix, points, rcond=None)[0])
-        spline, summary = self.run_fit(points, "--parameters", "t.npy", "--knots", "k.txt", "-m", "lspia", "--max-iterations", 2000)
-        self.assertLess(np.linalg.norm(points - matrix @ np.array(spline["control_points"])), 1.01 * best)
-        self.assertIn("Lin, Cao, Zhang", " ".join(summary["notes"]))
+        yield "a gap", np.column_stack([np.cos(4 * t), np.sin(6 * t)]), ["--parameters", "t.npy", "--knots", "k.txt"], design(knots(62), 3, t)
+        at = rng.random((3000, 2))
+        at = np.vstack([at[((at - 0.5) ** 2).sum(axis=1) > 0.04], [[0, 0], [1, 1]]])
+        np.save(self.folder / "at.npy", at)
+        rows = np.einsum("ij,ik->ijk", design(knots(20), 3, at[:, 0]), design(knots(20), 3, at[:, 1])).reshape(len(at), -1)
+        yield "a hole", np.column_stack([at, np.sin(5 * at[:, 0]) * np.cos(4 * at[:, 1])]), ["-n", "20x20", "--parameters", "at.npy"], rows
+        u, v = np.linspace(0, 1, 101), np.linspace(0, 1, 61)
+        u, v = u[(u < 0.4) | (u > 0.6)], v[(v < 0.1) | (v > 0.3)]
+        np.savetxt(self.folder / "u.txt", u, fmt="%.17g")
+        np.savetxt(self.folder / "v.txt", v, fmt="%.17g")
+        grid = np.stack([*np.meshgrid(u, v, indexing="ij"), np.sin(5 * u[:, None]) * np.cos(4 * v)], axis=-1)
+        yield "a grid of rank less than its size", grid, ["--parameters", "u.txt", "--parameters", "v.txt", "-n", "30x20", "--knots", "uniform"], np.kron(
+            design(knots(30), 3, u), design(knots(20), 3, v))
+
+    def test_open_directions_do_not_hold_up_the_others(self):
+        for name, points, arguments, matrix in self.singular_problems():
+            flat = points.reshape(-1, points.shape[-1])
+            flat = flat + 0.001 * np.random.default_rng(2).normal(size=flat.shape)
+            best = np.linalg.norm(flat - matrix @ np.linalg.lstsq(matrix, flat, rcond=None)[0])
+            for method in ("lspia", "mlspia", "chebyshev", "nesterov", "nmlspia", "alspia"):
+                spline, summary = self.run_fit(flat.reshape(points.shape), *arguments, "-m", method, "--max-iterations", 300, "--stop-relative-gradient", 0)
+                control = np.array(spline["control_points"]).reshape(-1, points.shape[-1])
+                self.assertLess(np.linalg.norm(flat - matrix @ control), (1.05 if method == "lspia" else 1.02) * best, (name, method))
+                self.assertIn("Lin, Cao, Zhang 2018", " ".join(summary["notes"]), (name, method))
+
+    def test_gradients_over_row_sums_are_the_formulas(self):
+        for name, points, arguments, matrix in self.problems(4):
+            flat = points.reshape(-1, points.shape[-1])
+            for method in ("alspia", "nmlspia", "mlspia", "chebyshev"):
+                spline, summary = self.run_fit(points, *arguments, "-m", method, "--set", "row_sums=1", "--set", "eigenvalue_tolerance=1e-12", "--initial", "zero",
+                                               "--max-iterations", STEPS, "--stop-relative-gradient", 0)
+                normal = Normal(matrix(spline), flat, np.ones(len(flat)))
+                root = np.sqrt(normal.sums)
+                normal.eigenvalues = np.linalg.eigvalsh(normal.h / root[:, None] / root)
+                self.assertAlmostEqual(normal.eigenvalues[-1], 1)
+                normal.h, normal.right = normal.h / normal.sums[:, None], normal.right / normal.sums[:, None]
+                normal.eigenvalues[0] = max(normal.eigenvalues[0], 1e-3)
+                formula = {**FORMULAS, "mlspia": mlspia, "chebyshev": chebyshev}[method]
+                control, _ = formula(normal, np.zeros((len(normal.h), points.shape[-1])), STEPS)
+                ours = np.array(spline["control_points"]).reshape(control.shape)
+                self.assertLess(abs(ours - control).max(), 1e-8 * abs(control).max(), (name, method))
+
+    def test_raised_eigenvalues_are_said(self):
+        _, points, arguments, matrix = list(self.singular_problems())[1]
+        for method in ("lspia", "mlspia", "chebyshev", "nesterov", "alspia"):
+            for plain, floor in ((0, "1e-06"), (1, "0.001")):
+                _, summary = self.run_fit(points, *arguments, "-m", method, "--set", f"row_sums={plain}", "--max-iterations", 5)
+                self.assertIn(f"counts as {floor} of it", " ".join(summary["notes"]), (method, plain))
+                self.assertEqual(summary.get("predicted_rate", 0), 0)
+
+    def test_mlspia_starts_from_a_stated_lambda(self):
+        _, points, arguments, matrix = next(self.problems(2))
+        spline, _ = self.run_fit(points, *arguments, "-m", "mlspia", "--set", "lambda=0.25", "--set", "eigenvalue_tolerance=1e-12", "--max-iterations", STEPS,
+                                 "--initial", "zero", "--stop-relative-gradient", 0)
+        rows = matrix(spline)
+        control, _ = mlspia(Normal(rows, points, np.ones(len(points))), np.zeros((15, 3)), STEPS, first=0.25)
+        self.assertLess(abs(np.array(spline["control_points"]) - control).max(), 1e-9)
+
+    def test_a_method_with_memory_goes_on(self):
+        """Ten steps are four, and six more from the last two control polygons; over refined knots the formulas', with all refined."""
+        _, points, arguments, matrix = next(self.problems(6))
+        for method in ("mlspia", "nesterov", "nmlspia"):
+            run = lambda steps, *more, where=arguments: self.run_fit(points, *where, "-m", method, "--set", "eigenvalue_tolerance=1e-12", "--max-iterations", steps,
+                                                                     "--stop-relative-gradient", 0, *more)[0]
+            whole = run(10)
+            for steps, name in ((3, "b.json"), (4, "a.json")):
+                (self.folder / name).write_text(json.dumps(run(steps)))
+            went_on = run(6, "--initial", "a.json", "--before", "b.json")
+            np.testing.assert_allclose(went_on["control_points"], whole["control_points"], atol=1e-9)
+            afresh = run(6, "--initial", "a.json")
+            self.assertGreater(abs(np.array(afresh["control_points"]) - whole["control_points"]).max(), 1e-6)
+            old = np.array(whole["knots"][0])
+            fine = np.sort(np.r_[old, (old[5:9] + old[6:10]) / 2])
+            np.savetxt(self.folder / "fine.txt", fine, fmt="%.17g")
+            where = ["--parameters", "t.npy", "--knots", "fine.txt"]
+            went_on = run(6, "--initial", "a.json", "--before", "b.json", where=where)
+            t = np.load(self.folder / "t.npy")
+            start, before = (self.refined(old, np.array(json.loads((self.folder / name).read_text())["control_points"]), np.setdiff1d(fine, old))
+                             for name in ("a.json", "b.json"))
+            normal = Normal(design(fine, 3, t), points, np.ones(len(points)))
+            control = (mlspia if method == "mlspia" else nmlspia)(normal, start, 6, before=before)[0]
+            self.assertLess(abs(np.array(went_on["control_points"]) - control).max(), 1e-9, method)
+
+    def refined(self, knots, control, more):
+        strands = (knots, list(control.T), 3)
+        for x in more:
+            strands = insert(x, strands)
+        return np.array(strands[1])[:, :len(strands[0]) - 4].T
+
+    def test_what_has_no_memory_or_other_knots_is_refused(self):
+        _, points, arguments, _ = next(self.problems(6))
+        spline, _ = self.run_fit(points, *arguments, "-m", "mlspia", "--max-iterations", 3)
+        (self.folder / "a.json").write_text(json.dumps(spline))
+        for arguments, words in ((["-n", 15, "-m", "lspia", "--initial", "a.json", "--before", "a.json"], "method lspia cannot go on from the iteration before; mlspia,"),
+                                 (["-n", 15, "-m", "mlspia", "--before", "a.json"], "before: 15 control points of dimension 3, but 0 of"),
+                                 (["-n", 17, "-m", "mlspia", "--initial", "a.json"], "whose knots do not contain theirs")):
+            done = self.run_batten("fit", "q.npy", "--parameters", "t.npy", *arguments, "-q", "-o", "o.json")
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(words, done.stderr)
 
     def test_peng_and_lis_tables_come_out(self):
         done = subprocess.run([BATTEN, "reproduce", "salspia", "--folder", "r"], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)

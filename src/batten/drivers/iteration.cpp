@@ -1,7 +1,6 @@
 #include <batten/drivers/iteration.hpp>
 
 #include <batten/iterate/methods.hpp>
-#include <batten/shape/limits.hpp>
 #include <batten/system/normal_system.hpp>
 
 #include <algorithm>
@@ -60,16 +59,20 @@ void check_limit_settings(const FitOptions& options, bool by_one_factor) {
     }
 }
 
-/// The step limit that keeps what the options want kept, none for nothing.
+/// The step limit that keeps what the options want kept, none for nothing; `kept`, which must
+/// outlive it, is told what keep_turns has done.
 StepLimit shape_limit(const FitOptions& options, Closure closure, const Departure& start,
-                      std::string_view method) {
+                      std::string_view method, KeptTurns& kept) {
     const bool by_one_factor = method == "pia" && options.hold.preserve == Preserve::convexity;
     check_limit_settings(options, by_one_factor);
     if (options.hold.preserve == Preserve::nothing) return {};
-    if (by_one_factor)
-        return [closure](const PointSet& polygon, PointSet& moves) {
-            keep_turns(polygon, moves, closure);
+    if (by_one_factor) {
+        const double threshold =
+            setting(options.method.settings, "threshold").value_or(default_turn_threshold);
+        return [closure, threshold, &kept](const PointSet& polygon, PointSet& moves) {
+            keep_turns(polygon, moves, closure, threshold, &kept);
         };
+    }
     const MethodEntry& entry = method_entry(method);
     const Settings& given = options.method.settings;
     const InflectionLimit limit{setting(entry, given, "alpha"),
@@ -82,22 +85,49 @@ StepLimit shape_limit(const FitOptions& options, Closure closure, const Departur
 
 } // namespace
 
-void check_shape(Preserve preserve, const std::vector<KnotVector>& axes, const PointSet& control) {
+void check_shape(Preserve preserve, const std::vector<KnotVector>& axes, const PointSet& control,
+                 std::string_view method) {
     if (preserve == Preserve::nothing) return;
     if (axes.size() != 1 || control.dim() != 2)
         throw InvalidInput(fmt::format(
             "preserve: shape is kept for curves in the plane, not for {} in dimension {}",
             axes.size() == 1 ? "a curve" : "a surface or volume", control.dim()));
-    if (preserve == Preserve::convexity && !convex(control, axes[0].closure()))
+    if (preserve == Preserve::convexity && method != "pia" && !convex(control, axes[0].closure()))
         throw InvalidInput("preserve convexity: the initial control polygon is not convex");
 }
+
+namespace {
+
+/// What stopped Algorithm 1 of [LinWangDong2004] short; nothing where it did not.
+std::string stop_of_turns(const KeptTurns& kept, const PointSet& polygon, Closure closure) {
+    constexpr double next_to_nothing = 1e-6;
+    if (kept.steps == 0 || !kept.held_by || kept.last > next_to_nothing) return {};
+    const Index n = polygon.size();
+    const Index at = *kept.held_by;
+    const Index before = (at + n - 1) % n;
+    const Index after = (at + 1) % n;
+    const bool inside = closure == Closure::closed || (at > 0 && at + 1 < n);
+    const bool straight =
+        inside && turn_sign(polygon[before], polygon[at], polygon[after], kept_roundings) == 0;
+    const std::string where =
+        straight ? fmt::format("control points {}, {} and {} are collinear", before, at, after)
+                 : fmt::format("the turn at control point {} would change its sign", at);
+    return fmt::format("the moves are held: {}; the factors of Algorithm 1 have come to {:.2g}, "
+                       "their sum over {} steps is {:.6g}, which Theorem 2 of Lin, Wang, Dong 2004 "
+                       "takes for infinite",
+                       where, kept.last, kept.steps, kept.sum);
+}
+
+} // namespace
 
 Course iterated(Method& method, Departure start, const std::vector<KnotVector>& axes,
                 const FitOptions& options, const DeviationMeasure& deviation) {
     check_shape(options.hold.preserve, axes,
-                start.centre.empty() ? start.control : uncentred(start.control, start.centre));
+                start.centre.empty() ? start.control : uncentred(start.control, start.centre),
+                method.name());
     const Closure closure = axes[0].closure();
-    const StepLimit limit = shape_limit(options, closure, start, method.name());
+    KeptTurns kept;
+    const StepLimit limit = shape_limit(options, closure, start, method.name(), kept);
     Course course{std::move(start.control), {}};
     FitReport& report = course.report;
     StepLimit watched;
@@ -122,6 +152,8 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     report.predicted_rate = method.predicted_rate();
     report.settings = method.settings();
     if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
+    if (const std::string stopped = stop_of_turns(kept, course.control, closure); !stopped.empty())
+        report.notes.push_back(stopped);
     const double rounding = std::numeric_limits<double>::epsilon() * largest_length(course.control);
     if (summary.termination == Termination::stalled && wanted > rounding) report.held_back = wanted;
     return course;

@@ -2,6 +2,7 @@
 
 #include <batten/problem/problem.hpp>
 #include <batten/problem/report.hpp>
+#include <batten/shape/limits.hpp>
 
 namespace batten {
 
@@ -24,7 +25,8 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
                 const FitOptions& options, const DeviationMeasure& deviation);
 
 /// Throws InvalidInput unless what is to be kept can be: of a planar curve, convexity of a convex
-/// initial polygon (absolute).
-void check_shape(Preserve preserve, const std::vector<KnotVector>& axes, const PointSet& control);
+/// initial polygon (absolute); PIA keeps the turns of any [LinWangDong2004, section 1.3].
+void check_shape(Preserve preserve, const std::vector<KnotVector>& axes, const PointSet& control,
+                 std::string_view method);
 
 } // namespace batten

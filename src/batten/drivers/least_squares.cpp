@@ -117,7 +117,7 @@ Course solved_in_shape(const Equations& equations, const Problem& problem) {
     const HoldOptions& hold = problem.options.hold;
     const PointSet initial = initial_control(problem.samples, problem.parameters, equations.axes,
                                              problem.options.method);
-    check_shape(hold.preserve, equations.axes, initial);
+    check_shape(hold.preserve, equations.axes, initial, "direct");
     const Index most = hold.preserve == Preserve::convexity
                            ? 0
                            : inflection_count(initial, equations.axes[0].closure(), kept_roundings);
@@ -149,6 +149,8 @@ Course iterated_from_start(const Equations& equations, const Problem& problem,
     const auto method = iteration_for(equations, problem, name);
     const PointSet start = initial_control(problem.samples, problem.parameters, equations.axes,
                                            problem.options.method);
+    if (problem.options.method.before.size() > 0)
+        method->resume(moves_before(problem.samples.dim(), equations.axes, problem.options.method));
     const DeviationMeasure deviation = [&](const PointSet& control) {
         const Spline now = Spline::from_free(equations.axes, control);
         return summarise(parametric_deviations(now, problem.samples, problem.parameters),

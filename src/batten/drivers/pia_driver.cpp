@@ -157,12 +157,26 @@ PointSet own_samples(const SampleGroups& groups, const Samples& samples) {
     return groups.means(PointSet(samples.points));
 }
 
+/// The stated weight of every move; none: the best.
+std::optional<double> weight_of(const Settings& settings) {
+    const MethodEntry& entry = method_entry("pia");
+    const std::optional<double> stated = setting(settings, "weight");
+    if (setting(entry, settings, "best_weight") == 0) return stated.value_or(1);
+    if (stated)
+        throw InvalidInput(
+            "settings weight and best_weight = 1 of method pia: one of them at most");
+    return {};
+}
+
 } // namespace
 
 Fitted fit_pia(const Problem& problem, std::string_view) {
     Stopwatch watch;
     const Samples& samples = problem.samples;
     const MethodOptions& method = problem.options.method;
+    if (method.settings.contains("threshold") &&
+        problem.options.hold.preserve != Preserve::convexity)
+        throw InvalidInput("setting threshold of method pia: only where convexity is preserved");
     const Setting setting =
         is_setting_of_2004(problem) ? setting_of_2004(samples) : square_setting(problem);
     const DataSide data(setting.axes, samples, setting.parameters,
@@ -170,7 +184,7 @@ Fitted fit_pia(const Problem& problem, std::string_view) {
     PointSet start = method.initial == Initial::data
                          ? own_samples(data.groups(), samples)
                          : initial_control(samples, setting.parameters, setting.axes, method);
-    Pia pia(data, batten::setting(method_entry("pia"), method.settings, "weight"), method.moving);
+    Pia pia(data, weight_of(method.settings), method.moving);
     Course course = iterated(pia, {std::move(start)}, setting.axes, problem.options,
                              [&](const PointSet& at) { return largest_length(data.residual(at)); });
     course.report.seconds.emplace_back("solve", watch.lap());

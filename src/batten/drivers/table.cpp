@@ -26,8 +26,8 @@ constexpr Requests held{samples, tangents};
 constexpr Requests searched{tolerance, limit, parameters, weights, closed, outliers, history};
 
 /// The columns of an iteration on the normal equations.
-Driver iteration(std::string_view name) {
-    const Requests all = space | least_squares_terms | course;
+Driver iteration(std::string_view name, Requests more = {}) {
+    const Requests all = space | least_squares_terms | course | more;
     return {method_entry(name), all | curves, all, all - rules, fit_least_squares};
 }
 
@@ -36,12 +36,13 @@ std::vector<Driver> table() {
     // a solution depends on no start, is beyond every stop, and its course is one step
     const Requests solved = space | least_squares_terms | held | course;
     const Requests interpolating = space | course | Requests{local};
+    const Requests remembering{memory};
     const Requests grown{size, history, stop, outliers};
     return {
         {method_entry("direct"), solved | curves, solved | boundary, solved - rules,
          fit_least_squares},
         iteration("lspia"),
-        iteration("mlspia"),
+        iteration("mlspia", remembering),
         {method_entry("clspia"), solved | curves, solved | boundary, solved - rules,
          fit_least_squares},
         {method_entry("pia"), interpolating | Requests{shape}, interpolating, std::nullopt,
@@ -50,11 +51,11 @@ std::vector<Driver> table() {
          grown | Requests{parameters}, grown | Requests{knots, start}, fit_epia},
         iteration("cg"),
         iteration("chebyshev"),
-        iteration("nesterov"),
+        iteration("nesterov", remembering),
         iteration("barzilai-borwein"),
         iteration("salspia"),
         iteration("alspia"),
-        iteration("nmlspia"),
+        iteration("nmlspia", remembering),
         iteration("lin2018"),
         {method_entry("search"), searched | held | curves | Requests{corners},
          searched | held | boundary, (searched | held) - rules, fit_by_search},

@@ -230,6 +230,16 @@ void add(Request request, Ask& ask) {
     case Request::stop:
         options.stop.max_iterations = 2;
         return;
+    case Request::memory: { // the last of all, after what decides on the spline space
+        FitOptions unmoved = options;
+        unmoved.stop = {.max_iterations = 0};
+        const Spline start = fit(ask.samples, unmoved).spline;
+        options.method.initial = Initial::given;
+        options.method.control = start.free_control_points();
+        options.method.before = start.free_control_points();
+        for (double& x : options.method.before.values()) x *= 0.999;
+        return;
+    }
     default:
         return;
     }
@@ -342,6 +352,7 @@ bool shows(Request request, const Ask& ask, const FitResult& result) {
         return static_cast<Index>(report.history.size()) == report.iterations + 1;
     case Request::parameters:
     case Request::weights:
+    case Request::memory:
         return true; // seen beside the answer without it only
     }
     return false;

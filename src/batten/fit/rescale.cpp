@@ -61,6 +61,7 @@ FitOptions rescaled(FitOptions options, double factor) {
     for (HeldBoundary& boundary : options.hold.boundaries)
         boundary.spline = scaled(boundary.spline, factor);
     options.method.control = scaled(std::move(options.method.control), factor);
+    options.method.before = scaled(std::move(options.method.before), factor);
     scale(options.method.settings, factor);
     options.stop.gradient *= factor;
     options.stop.deviation *= factor;

@@ -1,7 +1,6 @@
 #include <batten/iterate/accelerated.hpp>
 
 #include <batten/iterate/methods.hpp>
-#include <batten/solve/extreme_eigenvalues.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +9,10 @@ namespace batten {
 
 namespace {
 
-/// Eigenvalues known to `tolerance` only, widened so that the interval surely holds the spectrum.
-ExtremeEigenvalues widened(const NormalSystem& system, double tolerance) {
-    const ExtremeEigenvalues e = extreme_eigenvalues(system, tolerance);
+/// Eigenvalues known to a tolerance only, widened so that the interval surely holds the spectrum.
+ExtremeEigenvalues widened(const StepGradient& gradient) {
+    const ExtremeEigenvalues& e = gradient.eigenvalues().values;
+    const double tolerance = gradient.tolerance();
     return {e.largest * (1 + tolerance), e.smallest * (1 - tolerance)};
 }
 
@@ -22,22 +22,22 @@ void scale(PointSet& x, double factor) {
 
 } // namespace
 
-Chebyshev::Chebyshev(const NormalSystem& system, double eigenvalue_tolerance)
-    : system_(system), eigenvalue_tolerance_(eigenvalue_tolerance) {}
+Chebyshev::Chebyshev(const NormalSystem& system, double eigenvalue_tolerance, RowSums row_sums)
+    : gradient_(system, row_sums, eigenvalue_tolerance) {}
 
 void Chebyshev::start(PointSet&) {
-    check_setting("chebyshev", "eigenvalue_tolerance", eigenvalue_tolerance_);
-    const ExtremeEigenvalues e = widened(system_, eigenvalue_tolerance_);
+    check_setting("chebyshev", "eigenvalue_tolerance", gradient_.tolerance());
+    gradient_.start();
+    const ExtremeEigenvalues e = widened(gradient_);
     centre_ = (e.largest + e.smallest) / 2;
     radius_ = (e.largest - e.smallest) / 2;
     const double root = std::sqrt(e.largest / e.smallest);
-    rate_ = (root - 1) / (root + 1);
+    rate_ = gradient_.eigenvalues().raised() ? 0 : (root - 1) / (root + 1);
     last_ = {};
 }
 
 const PointSet& Chebyshev::propose(const PointSet& control) {
-    moves_ = system_.gradient(control);
-    norm_ = frobenius_norm(moves_);
+    moves_ = gradient_.at(control);
     if (last_.empty()) {
         rho_ = radius_ / centre_;
         scale(moves_, 1 / centre_);
@@ -56,28 +56,23 @@ const PointSet& Chebyshev::propose(const PointSet& control) {
     return moves_;
 }
 
-Nesterov::Nesterov(const NormalSystem& system, double eigenvalue_tolerance, std::string_view name)
-    : system_(system), eigenvalue_tolerance_(eigenvalue_tolerance), name_(name) {}
+Nesterov::Nesterov(const NormalSystem& system, double eigenvalue_tolerance, std::string_view name,
+                   RowSums row_sums)
+    : gradient_(system, row_sums, eigenvalue_tolerance), name_(name) {}
 
 void Nesterov::start(PointSet&) {
-    check_setting(name_, "eigenvalue_tolerance", eigenvalue_tolerance_);
-    const ExtremeEigenvalues e = widened(system_, eigenvalue_tolerance_);
+    check_setting(name_, "eigenvalue_tolerance", gradient_.tolerance());
+    gradient_.start();
+    const ExtremeEigenvalues e = widened(gradient_);
     step_ = 1 / e.largest;
     const double root = std::sqrt(e.largest / e.smallest);
     momentum_ = (root - 1) / (root + 1);
-    last_ = {};
 }
 
 const PointSet& Nesterov::propose(const PointSet& control) {
-    gradient_ = system_.gradient(control);
-    norm_ = frobenius_norm(gradient_);
-    moves_ = gradient_;
-    if (!last_.empty()) { // the gradient ahead, at y = P + momentum * (last move), is linear in the
-                          // move
-        PointSet image(system_.size(), system_.dim());
-        system_.apply(last_, image);
-        add_scaled(moves_, -momentum_, image);
-    }
+    moves_ = gradient_.at(control);
+    // the gradient ahead, at y = P + momentum * (last move), is linear in the move
+    if (!last_.empty()) add_scaled(moves_, -momentum_, gradient_.image(last_));
     scale(moves_, step_);
     if (!last_.empty()) add_scaled(moves_, momentum_, last_);
     return moves_;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <batten/iterate/method.hpp>
-#include <batten/system/normal_system.hpp>
+#include <batten/iterate/step_gradient.hpp>
 
 #include <deque>
 
@@ -12,25 +11,25 @@ namespace batten {
 class Chebyshev : public Method {
   public:
     explicit Chebyshev(const NormalSystem& system,
-                       double eigenvalue_tolerance = default_eigenvalue_tolerance);
+                       double eigenvalue_tolerance = default_eigenvalue_tolerance,
+                       RowSums row_sums = RowSums::where_ill_determined);
     std::string_view name() const override { return "chebyshev"; }
     void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override { last_ = moves; }
-    double gradient_norm() const override { return norm_; }
+    double gradient_norm() const override { return gradient_.norm(); }
     Settings settings() const override {
         return {{"largest", centre_ + radius_}, {"smallest", centre_ - radius_}};
     }
     double predicted_rate() const override { return rate_; }
+    std::string note() const override { return gradient_.note(); }
 
   private:
-    const NormalSystem& system_;
-    double eigenvalue_tolerance_;
+    StepGradient gradient_;
     double centre_ = 0; // of the eigenvalues' interval
     double radius_ = 0;
     double rho_ = 0; // ratio of consecutive Chebyshev polynomials
     double rate_ = 0;
-    double norm_ = 0;
     PointSet moves_;
     PointSet last_;
 };
@@ -41,22 +40,22 @@ class Nesterov : public Method {
   public:
     explicit Nesterov(const NormalSystem& system,
                       double eigenvalue_tolerance = default_eigenvalue_tolerance,
-                      std::string_view name = "nesterov");
+                      std::string_view name = "nesterov",
+                      RowSums row_sums = RowSums::where_ill_determined);
     std::string_view name() const override { return name_; }
     void start(PointSet& control) override;
+    void resume(PointSet last_moves) override { last_ = std::move(last_moves); }
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override { last_ = moves; }
-    double gradient_norm() const override { return norm_; }
+    double gradient_norm() const override { return gradient_.norm(); }
     Settings settings() const override { return {{"step", step_}, {"momentum", momentum_}}; }
+    std::string note() const override { return gradient_.note(); }
 
   private:
-    const NormalSystem& system_;
-    double eigenvalue_tolerance_;
+    StepGradient gradient_;
     std::string_view name_;
     double step_ = 0;
     double momentum_ = 0;
-    double norm_ = 0;
-    PointSet gradient_;
     PointSet moves_;
     PointSet last_;
 };

@@ -1,23 +1,27 @@
 #include <batten/iterate/alspia.hpp>
 
 #include <batten/iterate/methods.hpp>
-#include <batten/solve/extreme_eigenvalues.hpp>
 
 #include <cmath>
 #include <numbers>
 
 namespace batten {
 
-Alspia::Alspia(const NormalSystem& system, Index cycle, double eigenvalue_tolerance)
-    : system_(system), cycle_(cycle), eigenvalue_tolerance_(eigenvalue_tolerance) {}
+Alspia::Alspia(const NormalSystem& system, Index cycle, double eigenvalue_tolerance,
+               RowSums row_sums)
+    : gradient_(system, row_sums, eigenvalue_tolerance), cycle_(cycle) {}
 
 void Alspia::start(PointSet&) {
     constexpr double singular = 1e-10;
     check_setting("alspia", "cycle", static_cast<double>(cycle_));
-    check_setting("alspia", "eigenvalue_tolerance", eigenvalue_tolerance_);
-    const ExtremeEigenvalues e = extreme_eigenvalues(system_, eigenvalue_tolerance_);
-    largest_ = e.largest;
-    smallest_ = e.smallest > singular * e.largest ? e.smallest : 0;
+    check_setting("alspia", "eigenvalue_tolerance", gradient_.tolerance());
+    gradient_.start();
+    const WorkingEigenvalues& working = gradient_.eigenvalues();
+    largest_ = working.values.largest;
+    // the roots that vanish at 0 do without an eigenvalue that would have to be raised
+    const bool open =
+        gradient_.by_row_sums() ? working.raised() : working.found <= singular * largest_;
+    smallest_ = open ? 0 : working.found;
     taken_ = 0;
 }
 
@@ -35,8 +39,7 @@ double Alspia::factor() const {
 }
 
 const PointSet& Alspia::propose(const PointSet& control) {
-    moves_ = system_.gradient(control);
-    norm_ = frobenius_norm(moves_);
+    moves_ = gradient_.at(control);
     const double step = factor();
     for (double& x : moves_.values()) x *= step;
     return moves_;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <batten/iterate/method.hpp>
-#include <batten/system/normal_system.hpp>
+#include <batten/iterate/step_gradient.hpp>
 
 #include <optional>
 
@@ -12,30 +11,27 @@ namespace batten {
 class Lspia : public Method {
   public:
     /// Without `mu` the best one, 2 / (sigma_1^2 + sigma_r^2), from eigenvalues of that relative
-    /// accuracy; where the samples leave directions ill-determined a step of each control point's
-    /// own, as lin2018 takes it.
+    /// accuracy; of gradients over row sums 1, as lin2018 has it. A stated `mu` multiplies
+    /// gradients as they are unless row sums are asked for.
     explicit Lspia(const NormalSystem& system, std::optional<double> mu = {},
-                   double eigenvalue_tolerance = default_eigenvalue_tolerance);
+                   double eigenvalue_tolerance = default_eigenvalue_tolerance,
+                   std::optional<RowSums> row_sums = {});
 
     std::string_view name() const override { return "lspia"; }
-    /// Throws InvalidInput unless 0 < mu < 2 / sigma_1^2.
+    /// Throws InvalidInput unless 0 < mu < 2 / sigma_1^2, over row sums the largest eigenvalue's.
     void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet&) override {}
-    double gradient_norm() const override { return norm_; }
-    Settings settings() const override;
+    double gradient_norm() const override { return gradient_.norm(); }
+    Settings settings() const override { return {{"mu", mu_}}; }
     double predicted_rate() const override { return rate_; }
-    std::string note() const override { return note_; }
+    std::string note() const override { return gradient_.note(); }
 
   private:
-    const NormalSystem& system_;
+    StepGradient gradient_;
     std::optional<double> given_mu_;
     double mu_ = 0;
-    std::vector<double> own_steps_; ///< in place of mu
-    double eigenvalue_tolerance_;
     double rate_ = 0;
-    std::string note_;
-    double norm_ = 0;
     PointSet moves_;
 };
 

@@ -29,6 +29,10 @@ class Method {
     /// Prepares for the control points P^0, which it may move first; throws InvalidInput when a
     /// setting forbids convergence.
     virtual void start(PointSet& control) = 0;
+    /// Goes on with the memory of an earlier run instead of a fresh start, also after its knots
+    /// were refined: `last_moves` (N x dim) led to the control points that start() is given, both
+    /// refined alike. A method without memory has no use for them.
+    virtual void resume(PointSet /*last_moves*/) {}
     /// The moves that the method wants at P^k.
     virtual const PointSet& propose(const PointSet& control) = 0;
     /// The moves made from P^k to P^{k+1}.

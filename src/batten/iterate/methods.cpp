@@ -8,6 +8,7 @@
 #include <batten/iterate/lspia.hpp>
 #include <batten/iterate/mlspia.hpp>
 #include <batten/iterate/salspia.hpp>
+#include <batten/shape/limits.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -29,11 +30,19 @@ constexpr MethodSetting eigenvalue_setting{
     "eigenvalue_tolerance", "relative accuracy of the extreme eigenvalues of A^T A",
     default_eigenvalue_tolerance, SettingRange{0, 1, open, open}};
 
-constexpr MethodSetting eigenvalues_only[]{eigenvalue_setting};
+/// Whether gradients are taken over row sums, by every method that chooses steps by eigenvalues.
+constexpr MethodSetting row_sum_setting{
+    "row_sums", "1: gradients over the row sums of A^T A, 0: as they are",
+    "1 where samples leave directions ill-determined and no step factor is stated", switched,
+    "Lin, Cao, Zhang 2018"};
+
+constexpr MethodSetting eigenvalues_only[]{eigenvalue_setting, row_sum_setting};
 
 constexpr MethodSetting lspia_settings[]{
-    {"mu", "step factor", "2 / (sigma_1^2 + sigma_r^2)", positive, "Deng, Lin 2014, eq. 18"},
+    {"mu", "step factor", "2 / (sigma_1^2 + sigma_r^2), over row sums 1", positive,
+     "Deng, Lin 2014, eq. 18"},
     eigenvalue_setting,
+    row_sum_setting,
 };
 
 constexpr MethodSetting mlspia_settings[]{
@@ -43,7 +52,10 @@ constexpr MethodSetting mlspia_settings[]{
      "eq. 27, for grids eq. 37", any_number, "Huang, Wang 2020, eq. 3 and 11"},
     {"nu", "step factor", "eq. 27, for grids eq. 37; less where omega and gamma ask for it",
      positive, "Huang, Wang 2020, eq. 3 and 11"},
+    {"lambda", "Lambda^0 in parts of the residual Q - A P^0", "omega, as in section 6.2",
+     any_number, "Huang, Wang 2020, eq. 2 and section 6.2"},
     eigenvalue_setting,
+    row_sum_setting,
 };
 
 constexpr MethodSetting clspia_settings[]{
@@ -64,6 +76,11 @@ constexpr MethodSetting clspia_settings[]{
 
 constexpr MethodSetting pia_settings[]{
     {"weight", "factor of every move", 1.0, SettingRange{0, 2, open, closed}, "Lu 2010"},
+    {"best_weight", "1: the weight of the least rate, 2 / (1 + the smallest eigenvalue)", 0.0,
+     switched, "Lu 2010"},
+    {"threshold",
+     "D: where the search for a kept shape's factor ends, in parts of the longest move",
+     default_turn_threshold, SettingRange{0, 1, open, open}, "Lin, Wang, Dong 2004, Algorithm 1"},
 };
 
 constexpr MethodSetting epia_settings[]{
@@ -99,6 +116,7 @@ constexpr MethodSetting alspia_settings[]{
     {"cycle", "Chebyshev roots taken in turn; the authors' 10000 overflow in long runs", 16.0,
      counts_from_one, "Wu, Liu 2024"},
     eigenvalue_setting,
+    row_sum_setting,
 };
 
 constexpr MethodSetting of_kept_shape[]{
@@ -146,6 +164,12 @@ const MethodSetting* find(const MethodEntry& entry, std::string_view name) {
     if (own != entry.settings.end()) return &*own;
     const auto shape = std::ranges::find(of_kept_shape, name, &MethodSetting::name);
     return iterates(entry) && shape != std::end(of_kept_shape) ? shape : nullptr;
+}
+
+std::optional<RowSums> stated_row_sums(const Settings& settings) {
+    const std::optional<double> stated = setting(settings, "row_sums");
+    if (!stated) return {};
+    return *stated == 1 ? RowSums::always : RowSums::never;
 }
 
 Preconditioner preconditioner(const MethodEntry& entry, const Settings& settings) {
@@ -212,22 +236,26 @@ std::unique_ptr<Method> make_method(std::string_view name, const NormalSystem& s
     const auto given = [&](const char* of) { return setting(settings, of); };
     const auto number = [&](const char* of) { return setting(entry, settings, of); };
     const auto accuracy = [&] { return number("eigenvalue_tolerance"); };
-    if (name == "lspia") return std::make_unique<Lspia>(system, given("mu"), accuracy());
+    const auto row_sums = stated_row_sums(settings);
+    const auto by_need = row_sums.value_or(RowSums::where_ill_determined);
+    if (name == "lspia") return std::make_unique<Lspia>(system, given("mu"), accuracy(), row_sums);
     if (name == "mlspia")
         return std::make_unique<Mlspia>(
-            system, MlspiaWeights{given("omega"), given("gamma"), given("nu")}, accuracy());
+            system, MlspiaWeights{given("omega"), given("gamma"), given("nu"), given("lambda")},
+            accuracy(), row_sums);
     if (name == "cg")
         return std::make_unique<ConjugateGradients>(system, preconditioner(entry, settings));
-    if (name == "chebyshev") return std::make_unique<Chebyshev>(system, accuracy());
-    if (name == "nesterov") return std::make_unique<Nesterov>(system, accuracy());
+    if (name == "chebyshev") return std::make_unique<Chebyshev>(system, accuracy(), by_need);
+    if (name == "nesterov" || name == "nmlspia")
+        return std::make_unique<Nesterov>(system, accuracy(), entry.name, by_need);
     if (name == "barzilai-borwein")
         return std::make_unique<BarzilaiBorwein>(system, static_cast<int>(number("memory")));
     if (name == "salspia")
         return std::make_unique<Salspia>(system, static_cast<int>(number("memory")),
                                          static_cast<SpectralStep>(number("step")));
     if (name == "alspia")
-        return std::make_unique<Alspia>(system, static_cast<Index>(number("cycle")), accuracy());
-    if (name == "nmlspia") return std::make_unique<Nesterov>(system, accuracy(), "nmlspia");
+        return std::make_unique<Alspia>(system, static_cast<Index>(number("cycle")), accuracy(),
+                                        by_need);
     if (name == "lin2018") return std::make_unique<Lin2018>(system);
     throw InvalidInput(fmt::format("method {} is no iteration on the normal equations", name));
 }

@@ -22,8 +22,13 @@ double longest_step(double omega, double gamma) {
 
 } // namespace
 
-Mlspia::Mlspia(const NormalSystem& system, MlspiaWeights weights, double eigenvalue_tolerance)
-    : system_(system), given_(weights), eigenvalue_tolerance_(eigenvalue_tolerance) {}
+Mlspia::Mlspia(const NormalSystem& system, MlspiaWeights weights, double eigenvalue_tolerance,
+               std::optional<RowSums> row_sums)
+    : gradient_(
+          system,
+          row_sums.value_or(weights.stated() ? RowSums::never : RowSums::where_ill_determined),
+          eigenvalue_tolerance),
+      given_(weights) {}
 
 void Mlspia::choose_weights(const ExtremeEigenvalues& sigma2) {
     const double s1 = std::sqrt(sigma2.largest);
@@ -58,25 +63,25 @@ double Mlspia::root_modulus(double sigma2) const {
 }
 
 void Mlspia::start(PointSet& control) {
-    check_setting("mlspia", "eigenvalue_tolerance", eigenvalue_tolerance_);
-    const WorkingEigenvalues working = working_eigenvalues(system_, eigenvalue_tolerance_);
+    check_setting("mlspia", "eigenvalue_tolerance", gradient_.tolerance());
+    gradient_.start();
+    const WorkingEigenvalues& working = gradient_.eigenvalues();
     const ExtremeEigenvalues& sigma2 = working.values;
-    note_ = working.note;
     choose_weights(sigma2);
     // Lemma 3: 1 - omega and the roots of eq. 16; their modulus is largest at one of the extreme
     // singular values
-    rate_ = std::max(
-        {std::abs(1 - omega_), root_modulus(sigma2.largest), root_modulus(sigma2.smallest)});
+    rate_ = working.raised() ? 0
+                             : std::max({std::abs(1 - omega_), root_modulus(sigma2.largest),
+                                         root_modulus(sigma2.smallest)});
     if (last_.empty()) return;
     PointSet before = control;
     add_scaled(before, -1.0, last_);
-    last_delta_ = system_.gradient(before);
+    last_delta_ = gradient_.at(before);
     for (double& x : last_delta_.values()) x *= nu_;
 }
 
 const PointSet& Mlspia::propose(const PointSet& control) {
-    delta_ = system_.gradient(control);
-    norm_ = frobenius_norm(delta_);
+    delta_ = gradient_.at(control);
     for (double& x : delta_.values()) x *= nu_;
     moves_ = delta_;
     if (!last_.empty()) {
@@ -85,9 +90,10 @@ const PointSet& Mlspia::propose(const PointSet& control) {
                                  (omega_ - gamma_) * last_delta_.values()[k];
     } else if (!first_.empty()) {
         moves_ = first_;
+        gradient_.scale(moves_);
         for (double& x : moves_.values()) x *= nu_;
     } else {
-        for (double& x : moves_.values()) x *= omega_;
+        for (double& x : moves_.values()) x *= given_.lambda.value_or(omega_);
     }
     return moves_;
 }

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <batten/iterate/method.hpp>
-#include <batten/solve/extreme_eigenvalues.hpp>
-#include <batten/system/normal_system.hpp>
+#include <batten/iterate/step_gradient.hpp>
 
 #include <optional>
 
@@ -14,6 +12,11 @@ struct MlspiaWeights {
     std::optional<double> omega{};
     std::optional<double> gamma{};
     std::optional<double> nu{};
+    /// Lambda^0 in parts of Q - A P^0; omega where it is absent, which is what both kinds of
+    /// initial control points in section 6.2 come to.
+    std::optional<double> lambda{};
+
+    bool stated() const { return omega || gamma || nu; }
 };
 
 /// Least-squares PIA with memory [HuangWang2020, eq. 1 to 3]:
@@ -21,11 +24,12 @@ struct MlspiaWeights {
 /// A^T (Q - A P^k).
 class Mlspia : public Method {
   public:
+    /// Stated weights multiply gradients as they are unless row sums are asked for.
     explicit Mlspia(const NormalSystem& system, MlspiaWeights weights = {},
-                    double eigenvalue_tolerance = default_eigenvalue_tolerance);
+                    double eigenvalue_tolerance = default_eigenvalue_tolerance,
+                    std::optional<RowSums> row_sums = {});
 
-    /// Replaces Delta^0 = omega nu A^T (Q - A P^0) (both kinds of initial control points in
-    /// section 6.2) by nu A^T Lambda^0 for a Lambda^0 of the caller's: `moves` (N x dim) is A^T
+    /// Makes Delta^0 = nu A^T Lambda^0 for any Lambda^0 of the caller's: `moves` (N x dim) is A^T
     /// Lambda^0.
     void set_first_moves(PointSet moves) { first_ = std::move(moves); }
 
@@ -34,31 +38,25 @@ class Mlspia : public Method {
     void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override;
-    double gradient_norm() const override { return norm_; }
+    double gradient_norm() const override { return gradient_.norm(); }
     Settings settings() const override;
     double predicted_rate() const override { return rate_; }
-    std::string note() const override { return note_; }
+    std::string note() const override { return gradient_.note(); }
 
     /// Delta^{k-1}: the moves that led to the present control points; empty before the first.
     const PointSet& last_moves() const { return last_; }
-    /// Continues with the memory of an earlier run instead of a fresh start, also after its knots
-    /// were refined: `last_moves` (N x dim) are the moves that led to the control points given to
-    /// start(), both refined alike.
-    void resume(PointSet last_moves) { last_ = std::move(last_moves); }
+    void resume(PointSet last_moves) override { last_ = std::move(last_moves); }
 
   private:
     void choose_weights(const ExtremeEigenvalues& sigma2);
     double root_modulus(double sigma2) const;
 
-    const NormalSystem& system_;
+    StepGradient gradient_;
     MlspiaWeights given_;
     double omega_ = 0;
     double gamma_ = 0;
     double nu_ = 0;
-    double eigenvalue_tolerance_;
     double rate_ = 0;
-    std::string note_;
-    double norm_ = 0;
     PointSet first_;
     PointSet last_;
     PointSet last_delta_;

@@ -1,6 +1,5 @@
 #include <batten/iterate/pia.hpp>
 
-#include <batten/iterate/convergence_rate.hpp>
 #include <batten/iterate/methods.hpp>
 
 #include <algorithm>
@@ -10,10 +9,11 @@
 
 namespace batten {
 
-Pia::Pia(const DataSide& data, double weight, std::vector<Index> chosen, Divergence divergence)
-    : data_(data), weight_(weight), divergence_(divergence) {
+Pia::Pia(const DataSide& data, std::optional<double> weight, std::vector<Index> chosen,
+         Divergence divergence)
+    : data_(data), given_weight_(weight), divergence_(divergence) {
     const Index controls = data.groups().size();
-    check_setting("pia", "weight", weight);
+    if (weight) check_setting("pia", "weight", *weight);
     if (chosen.empty()) return;
     moves_allowed_.assign(static_cast<std::size_t>(controls), false);
     for (Index i : chosen) {
@@ -44,12 +44,17 @@ void Pia::start(PointSet& control) {
     const RateEffort effort = divergence_ == Divergence::allowed
                                   ? RateEffort{.directions = 24, .restarts = 1}
                                   : RateEffort{};
+    // B-splines sum to one: so do the means of their values, where all control points move
+    std::vector<std::complex<double>> known;
+    if (moves_allowed_.empty()) known.emplace_back(1);
+    weight_ = given_weight_ ? *given_weight_ : best_weight(wa, moves.values(), effort, known);
     rate_ = convergence_rate(wa, weight_, std::move(moves.values()), effort);
+    if (!known.empty()) rate_.value = std::max(rate_.value, std::abs(1 - weight_));
     if (divergence_ == Divergence::refused && diverges(control))
         throw InvalidInput(fmt::format(
             "pia: the predicted rate is {:.6g}, above 1: the control points would move off without "
             "bound; other parameters or knots, or a smaller weight, may do",
-            rate_));
+            rate_.value));
 }
 
 PointSet Pia::image(const PointSet& moves) const {
@@ -63,7 +68,7 @@ bool Pia::diverges(const PointSet& control) {
     constexpr double faded = 1e-3;
     constexpr Index most_steps = 30'000;
     constexpr Index most_numbers = 300'000'000; // computed on the way
-    if (!(rate_ > 1)) return false;
+    if (!(rate_.value > 1)) return false;
     PointSet moves = propose(control);
     const double first = frobenius_norm(moves);
     const Index steps = std::min(most_steps, most_numbers / (moves.size() * moves.dim()));
@@ -78,10 +83,15 @@ bool Pia::diverges(const PointSet& control) {
 
 std::string Pia::note() const {
     constexpr double rounding = 1e-9;
-    if (rate_ <= 1 + rounding) return {};
+    constexpr double printed = 1e-6;
+    const std::string known =
+        rate_.accuracy > printed && divergence_ == Divergence::refused
+            ? fmt::format("the predicted rate is known to {:.1g} only", rate_.accuracy)
+            : "";
+    if (rate_.value <= 1 + rounding) return known;
     return fmt::format("the predicted rate is {:.6g}, not below 1: the moves may grow before they "
-                       "fade, or not fade",
-                       rate_);
+                       "fade, or not fade{}{}",
+                       rate_.value, known.empty() ? "" : "; ", known);
 }
 
 const PointSet& Pia::propose(const PointSet& control) {

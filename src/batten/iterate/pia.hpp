@@ -1,7 +1,10 @@
 #pragma once
 
+#include <batten/iterate/convergence_rate.hpp>
 #include <batten/iterate/method.hpp>
 #include <batten/system/sample_groups.hpp>
+
+#include <optional>
 
 namespace batten {
 
@@ -17,10 +20,11 @@ enum class Divergence {
 /// them the DataSide's groups decide.
 class Pia : public Method {
   public:
-    /// `chosen`: only these control points move (local PIA); empty: all. Throws InvalidInput for a
-    /// weight outside its range or a control point that is none.
-    explicit Pia(const DataSide& data, double weight = 1, std::vector<Index> chosen = {},
-                 Divergence divergence = Divergence::refused);
+    /// `weight`: the factor of every move; none: the one of the least rate. `chosen`: only these
+    /// control points move (local PIA); empty: all. Throws InvalidInput for a weight outside its
+    /// range or a control point that is none.
+    explicit Pia(const DataSide& data, std::optional<double> weight = 1,
+                 std::vector<Index> chosen = {}, Divergence divergence = Divergence::refused);
 
     std::string_view name() const override { return "pia"; }
     /// Throws InvalidInput when the iteration would diverge and that is refused.
@@ -31,7 +35,7 @@ class Pia : public Method {
     double gradient_norm() const override { return norm_; }
     Settings settings() const override { return {{"weight", weight_}}; }
     /// Spectral radius of I - weight W A [LinWangDong2004, section 3].
-    double predicted_rate() const override { return rate_; }
+    double predicted_rate() const override { return rate_.value; }
     std::string note() const override;
 
     /// Residuals Q - A P of the last propose(), (m x dim): e_d is the longest [LinZhang2011, eq.
@@ -53,14 +57,15 @@ class Pia : public Method {
     bool diverges(const PointSet& control);
 
     const DataSide& data_;
-    double weight_;
+    std::optional<double> given_weight_;
+    double weight_ = 1;
     Divergence divergence_;
     std::vector<bool> moves_allowed_; // empty: all
     PointSet residual_;
     PointSet means_;
     PointSet moves_;
     double norm_ = 0;
-    double rate_ = 0;
+    ConvergenceRate rate_;
 };
 
 } // namespace batten

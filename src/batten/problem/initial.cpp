@@ -117,17 +117,44 @@ SampleGroups nearest_groups(const Parameters& parameters, const std::vector<Knot
     return {std::move(owner), GridIndex(free_shape(axes)).size()};
 }
 
+namespace {
+
+/// Given control points, refined where they stand over fewer knots.
+PointSet given_control(const PointSet& control, Index dim, const std::vector<KnotVector>& axes,
+                       const MethodOptions& options) {
+    const Index total = GridIndex(free_shape(axes)).size();
+    const bool fits = control.size() == total && control.dim() == dim;
+    if (fits) return control;
+    const std::string given = fmt::format("initial control points: {} of dimension {} given",
+                                          control.size(), control.dim());
+    if (options.control_axes.size() != axes.size() || control.dim() != dim)
+        throw InvalidInput(fmt::format("{}, {} of dimension {} needed", given, total, dim));
+    Spline spline = Spline::from_free(options.control_axes, control);
+    try {
+        for (std::size_t a = 0; a < axes.size(); ++a)
+            spline = refine(spline, static_cast<Index>(a), axes[a]);
+    } catch (const InvalidInput& error) {
+        throw InvalidInput(fmt::format("{}, {} needed, whose knots do not contain theirs: {}",
+                                       given, total, error.what()));
+    }
+    return spline.free_control_points();
+}
+
+} // namespace
+
+PointSet moves_before(Index dim, const std::vector<KnotVector>& axes,
+                      const MethodOptions& options) {
+    PointSet moves = given_control(options.control, dim, axes, options);
+    add_scaled(moves, -1, given_control(options.before, dim, axes, options));
+    return moves;
+}
+
 PointSet initial_control(const Samples& samples, const Parameters& parameters,
                          const std::vector<KnotVector>& axes, const MethodOptions& options) {
     const GridIndex net(free_shape(axes));
     const Index total = net.size();
-    if (options.initial == Initial::given) {
-        if (options.control.size() != total || options.control.dim() != samples.dim())
-            throw InvalidInput(fmt::format(
-                "initial control points: {} of dimension {} given, {} of dimension {} needed",
-                options.control.size(), options.control.dim(), total, samples.dim()));
-        return options.control;
-    }
+    if (options.initial == Initial::given)
+        return given_control(options.control, samples.dim(), axes, options);
     PointSet control(total, samples.dim());
     if (options.initial == Initial::zero) return control;
     if (parameters.is_scattered())

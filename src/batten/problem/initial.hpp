@@ -13,4 +13,8 @@ SampleGroups nearest_groups(const Parameters& parameters, const std::vector<Knot
 PointSet initial_control(const Samples& samples, const Parameters& parameters,
                          const std::vector<KnotVector>& axes, const MethodOptions& options);
 
+/// The moves (N x dim) that led to the given start, over these axes. Throws InvalidInput as
+/// initial_control does.
+PointSet moves_before(Index dim, const std::vector<KnotVector>& axes, const MethodOptions& options);
+
 } // namespace batten

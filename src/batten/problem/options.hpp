@@ -50,6 +50,12 @@ struct MethodOptions {
     Initial initial = Initial::data;
     /// (N x dim) free control points, for Initial::given.
     PointSet control{};
+    /// The axes that these stand over, refined to the fit's own, which must contain their knots;
+    /// empty: the fit's own.
+    std::vector<KnotVector> control_axes{};
+    /// Free control points (N x dim) over the same axes one iteration before `control`, so that a
+    /// method with memory goes on where an earlier run ended; empty: it starts afresh.
+    PointSet before{};
     /// Local PIA: only these control points move; empty: all.
     std::vector<Index> moving{};
 };

@@ -40,6 +40,13 @@ void check_asked_for(const FitOptions& options) {
         throw InvalidInput("smoothing: a factor is given, but smoothing is not wanted");
     if (options.method.control.size() > 0 && options.method.initial != Initial::given)
         throw InvalidInput("initial: control points are given, but the start is another");
+    const PointSet& before = options.method.before;
+    if (before.size() > 0 && (before.size() != options.method.control.size() ||
+                              before.dim() != options.method.control.dim()))
+        throw InvalidInput(fmt::format("before: {} control points of dimension {}, but {} of {} "
+                                       "to start from",
+                                       before.size(), before.dim(), options.method.control.size(),
+                                       options.method.control.dim()));
     if (!options.tolerance.corner_samples.empty() && options.tolerance.corners != Corners::given)
         throw InvalidInput("corners: samples are given, but the corners are not the given ones");
 }

@@ -27,6 +27,7 @@ std::string_view to_string(Request request) {
         "move only some control points",
         "record a history",
         "stop by iterations or gradient",
+        "go on from the iteration before",
     };
     return words[static_cast<std::size_t>(request)];
 }
@@ -72,6 +73,7 @@ Requests requests_of(const Problem& problem) {
                            options.stop.gradient > 0 ||
                            options.stop.relative_gradient != usual.relative_gradient ||
                            options.stop.deviation > 0);
+    ask(Request::memory, options.method.before.size() > 0);
     return result;
 }
 

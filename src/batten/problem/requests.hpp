@@ -29,10 +29,11 @@ enum class Request {
     start,    ///< stated control points to start from
     local,    ///< only some control points move
     history,
-    stop, ///< a stated limit, gradient or deviation at which to stop
+    stop,   ///< a stated limit, gradient or deviation at which to stop
+    memory, ///< the control points before those to start from
 };
 
-inline constexpr std::size_t request_count = static_cast<std::size_t>(Request::stop) + 1;
+inline constexpr std::size_t request_count = static_cast<std::size_t>(Request::memory) + 1;
 
 /// In words, such that "method X cannot ..." reads well.
 std::string_view to_string(Request request);

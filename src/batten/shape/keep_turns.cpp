@@ -2,23 +2,34 @@
 
 namespace batten {
 
-void keep_turns(const PointSet& polygon, PointSet& moves, Closure closure, double threshold) {
-    const auto same = [&](double part) {
+void keep_turns(const PointSet& polygon, PointSet& moves, Closure closure, double threshold,
+                KeptTurns* kept) {
+    constexpr double shortest = 1e-18;
+    const auto lost = [&](double part) {
         PointSet moved = polygon;
         add_scaled(moved, part, moves);
-        return keeps_shape(polygon, moved, closure, certain_roundings, certain_roundings);
+        return lost_turn(polygon, moved, closure, certain_roundings, certain_roundings);
     };
-    if (same(1)) return;
-    double good = 0.5;
-    while (!same(good) && good > 1e-18) good /= 2;
-    if (good <= 1e-18) good = 0;
-    // as close as possible to the whole move
+    double good = 1;
     double bad = 1;
+    std::optional<Index> held_by = lost(good);
+    if (held_by) good = 0.5;
+    while (held_by && good > shortest) {
+        const std::optional<Index> here = lost(good);
+        if (!here) break;
+        held_by = here;
+        good /= 2;
+    }
+    if (good <= shortest) good = 0;
+    // as close as possible to the whole move
     while (good > 0 && bad - good > threshold) {
         const double middle = (good + bad) / 2;
-        (same(middle) ? good : bad) = middle;
+        const std::optional<Index> here = lost(middle);
+        if (here) held_by = here;
+        (here ? bad : good) = middle;
     }
     for (double& x : moves.values()) x *= good;
+    if (kept != nullptr) *kept = {kept->sum + good, good, kept->steps + 1, held_by};
 }
 
 } // namespace batten

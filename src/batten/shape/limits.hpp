@@ -6,13 +6,24 @@
 
 namespace batten {
 
-/// Shortens all moves by one factor until the moved polygon turns the same way everywhere as the
-/// present one: Algorithm 1 of [LinWangDong2004], whose line 3 means L' where it prints L.
-/// `threshold` is its D as a part of the longest move. Where the polygon is straight it may begin
-/// to bend, unless it gets inflections by that. The factors' sum may stay finite, which their
-/// Theorem 2 excludes silently: the iteration can lock.
+/// D of keep_turns where none is stated.
+inline constexpr double default_turn_threshold = 1e-3;
+
+/// What Algorithm 1 of [LinWangDong2004] has done so far.
+struct KeptTurns {
+    double sum = 0;  ///< of the factors epsilon_k
+    double last = 1; ///< epsilon_k
+    Index steps = 0;
+    std::optional<Index> held_by{}; ///< the point at whose turn the last moves were shortened
+};
+
+/// Shortens all moves by one factor epsilon_k until the moved polygon, convex or not, turns the
+/// same way everywhere as the present one: Algorithm 1 of [LinWangDong2004], whose line 3 means L'
+/// where it prints L. `threshold` is its D as a part of the longest move. Where the polygon is
+/// straight it may begin to bend, unless it gets inflections by that. The factors' sum may stay
+/// finite, which their Theorem 2 excludes silently: the iteration can lock.
 void keep_turns(const PointSet& polygon, PointSet& moves, Closure closure = Closure::open,
-                double threshold = 1e-3);
+                double threshold = default_turn_threshold, KeptTurns* kept = nullptr);
 
 /// What a control point may not cross.
 enum class Barrier {

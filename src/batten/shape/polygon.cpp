@@ -128,22 +128,31 @@ double total_turning(const PointSet& polygon, Closure closure) {
     return sum;
 }
 
-bool keeps_shape(const PointSet& polygon, const PointSet& moved, Closure closure,
-                 const TurnMargin& margin, double bend) {
+std::optional<Index> lost_turn(const PointSet& polygon, const PointSet& moved, Closure closure,
+                               const TurnMargin& margin, double bend) {
     const Index n = polygon.size();
     const auto sign = [&](const PointSet& of, Index i, const TurnMargin& certain) {
         return turn_sign(of[i], of[(i + 1) % n], of[(i + 2) % n], certain);
     };
+    std::optional<Index> bent; // what was straight
     for (Index i = 0; i < (closure == Closure::closed ? n : n - 2); ++i) {
         const auto crowds = [&](const PointSet& of) {
             return crowded(of[i], of[(i + 1) % n], of[(i + 2) % n]);
         };
         const int before = sign(polygon, i, margin);
         const int now = sign(moved, i, margin);
-        if (now != before && (before != 0 || sign(moved, i, bend) == 0)) return false;
-        if (now == 0 && crowds(moved) && !crowds(polygon)) return false;
+        if (now != before && (before != 0 || sign(moved, i, bend) == 0)) return (i + 1) % n;
+        if (now == 0 && crowds(moved) && !crowds(polygon)) return (i + 1) % n;
+        if (now != before && !bent) bent = (i + 1) % n;
     }
-    return inflection_count(moved, closure, margin) <= inflection_count(polygon, closure, margin);
+    if (inflection_count(moved, closure, margin) <= inflection_count(polygon, closure, margin))
+        return {};
+    return bent.value_or(0);
+}
+
+bool keeps_shape(const PointSet& polygon, const PointSet& moved, Closure closure,
+                 const TurnMargin& margin, double bend) {
+    return !lost_turn(polygon, moved, closure, margin, bend);
 }
 
 } // namespace batten

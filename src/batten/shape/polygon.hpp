@@ -2,6 +2,7 @@
 
 #include <batten/core/core.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace batten {
@@ -54,9 +55,13 @@ Index inflection_count(const PointSet& polygon, Closure closure = Closure::open,
 /// turns at most.
 double total_turning(const PointSet& polygon, Closure closure = Closure::open);
 
-/// Whether a polygon whose points have moved still has its shape: turns that count have their
-/// signs, what was straight is so and is not crowded, or bends by more than `bend` roundings,
-/// and there are no more inflections than before.
+/// The first point at which a polygon whose points have moved has lost its shape, none where it has
+/// it still: turns that count have their signs, what was straight is so and is not crowded, or
+/// bends by more than `bend` roundings, and there are no more inflections than before.
+std::optional<Index> lost_turn(const PointSet& polygon, const PointSet& moved, Closure closure,
+                               const TurnMargin& margin, double bend);
+
+/// Whether there is no such point.
 bool keeps_shape(const PointSet& polygon, const PointSet& moved, Closure closure,
                  const TurnMargin& margin, double bend);
 

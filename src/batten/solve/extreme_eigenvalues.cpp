@@ -2,6 +2,7 @@
 
 #include <batten/core/vectors.hpp>
 #include <batten/solve/banded_cholesky.hpp>
+#include <batten/system/row_sums.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -179,15 +180,86 @@ std::string ill_determined_words(const NormalSystem& system) {
                        none, few, smallest / largest);
 }
 
+/// Counts the smallest as `floor` of the largest and says so.
+void raise(WorkingEigenvalues& working, double floor) {
+    ExtremeEigenvalues& e = working.values;
+    working.note +=
+        fmt::format("{}the smallest eigenvalue, {:.1e} of the largest, counts as {:g} "
+                    "of it: directions below that come slowly, if at all",
+                    working.note.empty() ? "" : "; ", std::max(0.0, e.smallest) / e.largest, floor);
+    e.smallest = floor * e.largest;
+}
+
+/// Whether roughness is a part of the system: products of B-splines are not negative.
+bool has_roughness(const NormalSystem& system, const std::vector<double>& sums) {
+    constexpr double rounding = 1e-9;
+    PointSet ones(system.size(), 1);
+    ones.fill(1);
+    PointSet image(system.size(), 1);
+    system.apply(ones, image);
+    for (Index i = 0; i < system.size(); ++i)
+        if (image(i, 0) < (1 - rounding) * sums[static_cast<std::size_t>(i)]) return true;
+    return false;
+}
+
+std::vector<double> inverse_roots(std::vector<double> sums) {
+    for (double& x : sums) x = x > 0 ? 1 / std::sqrt(x) : 0;
+    return sums;
+}
+
+ExtremeEigenvalues row_scaled_extremes(const NormalSystem& system, const std::vector<double>& sums,
+                                       double tolerance) {
+    const auto factors = system.factors();
+    if (factors.empty()) {
+        const std::vector<double> root = inverse_roots(sums);
+        PointSet x(system.size(), 1);
+        PointSet y(system.size(), 1);
+        const VectorOperator whole = [&](const Vector& in, Vector& out) {
+            for (std::size_t i = 0; i < in.size(); ++i) x.values()[i] = root[i] * in[i];
+            system.apply(x, y);
+            for (std::size_t i = 0; i < in.size(); ++i) out[i] = root[i] * y.values()[i];
+        };
+        return lanczos(whole, system.size(), tolerance);
+    }
+    ExtremeEigenvalues product{1, 1};
+    for (const BandedMatrix* gram : factors) {
+        const std::vector<double> root = inverse_roots(row_sums(*gram));
+        BandedMatrix scaled = *gram;
+        for (Index i = 0; i < scaled.size(); ++i)
+            for (int k = 0; k <= scaled.bandwidth(); ++k)
+                scaled.at(i, k) *= root[static_cast<std::size_t>(i)] *
+                                   root[static_cast<std::size_t>((i + k) % scaled.size())];
+        const ExtremeEigenvalues e =
+            banded_extremes(scaled, tolerance / static_cast<double>(factors.size()));
+        product.largest *= e.largest;
+        product.smallest *= e.smallest;
+    }
+    return product;
+}
+
 } // namespace
 
 WorkingEigenvalues working_eigenvalues(const NormalSystem& system, double tolerance) {
     constexpr double ill_determined = 1e-7;
     constexpr double working = 1e-6;
-    WorkingEigenvalues result{extreme_eigenvalues(system, tolerance), ill_determined_words(system)};
-    ExtremeEigenvalues& e = result.values;
+    WorkingEigenvalues result{.values = extreme_eigenvalues(system, tolerance),
+                              .note = ill_determined_words(system)};
+    const ExtremeEigenvalues& e = result.values;
+    result.found = e.smallest;
     result.ill_determined = !result.note.empty() || e.smallest < working * e.largest;
-    if (e.smallest < ill_determined * e.largest) e.smallest = working * e.largest;
+    if (e.smallest < ill_determined * e.largest) raise(result, working);
+    return result;
+}
+
+WorkingEigenvalues row_scaled_eigenvalues(const NormalSystem& system, double tolerance) {
+    constexpr double working = 1e-3;
+    const std::vector<double> sums = row_sums(system);
+    WorkingEigenvalues result{.values = row_scaled_extremes(system, sums, tolerance),
+                              .note = ill_determined_words(system)};
+    const ExtremeEigenvalues& e = result.values;
+    result.found = e.smallest;
+    result.ill_determined = true;
+    if (e.smallest < working * e.largest && !has_roughness(system, sums)) raise(result, working);
     return result;
 }
 

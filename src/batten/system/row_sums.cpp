@@ -4,8 +4,6 @@
 
 namespace batten {
 
-namespace {
-
 std::vector<double> row_sums(const BandedMatrix& matrix) {
     std::vector<double> sums(static_cast<std::size_t>(matrix.size()), 0);
     matrix.for_each_entry([&](Index row, Index, double value) {
@@ -13,8 +11,6 @@ std::vector<double> row_sums(const BandedMatrix& matrix) {
     });
     return sums;
 }
-
-} // namespace
 
 std::vector<double> row_sums(const NormalSystem& system) {
     const auto factors = system.factors();

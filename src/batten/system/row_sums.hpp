@@ -10,4 +10,7 @@ namespace batten {
 /// weighted sum over the samples, for B-splines sum to one. The largest bounds the eigenvalues.
 std::vector<double> row_sums(const NormalSystem& system);
 
+/// The same of one banded matrix.
+std::vector<double> row_sums(const BandedMatrix& matrix);
+
 } // namespace batten
