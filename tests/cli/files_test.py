@@ -60,7 +60,7 @@ WRITERS = {"fit -o": "fit p.csv -n 8 -q -o OUT.json", "fit --summary": "fit p.cs
 # one command line of every verb that prints
 PRINTERS = ["", "--help", "--version", "fit --help", "methods", "info p.csv", "info s.json", "compare s.json p.csv", "generate rose",
             "evaluate s.json --samples 9", "plot s.json", "fit p.csv -n 8", "fit p.csv -n 8 -q -o -", "fit p.csv -n 8 -q --summary -",
-            "reproduce mlspia"]
+            "reproduce epia"]
 
 
 class Places(Files):

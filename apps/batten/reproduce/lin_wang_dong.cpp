@@ -64,9 +64,9 @@ std::vector<Row> line(const FitResult& result, const std::array<const char*, 5>&
 
 std::vector<Table> lin_wang_dong(Workshop& workshop) {
     FitOptions options = pia_options();
-    const FitResult helix = drawn_fit(paper_helix(), options, workshop, "pia_helix", {});
+    const FitResult helix = drawn_fit(paper_helix(), options, workshop, "pia_helix", {0, 4, 15});
     const FitResult peaks =
-        drawn_fit(generate("peaks", {30, 30}), options, workshop, "pia_peaks", {});
+        drawn_fit(generate("peaks", {30, 30}), options, workshop, "pia_peaks", {0, 3, 15});
     const Samples polygon = convex_polygon();
     const auto inflections = [](const FitResult& r) {
         return static_cast<double>(inflection_count(r.spline.control_points()));
@@ -76,7 +76,9 @@ std::vector<Table> lin_wang_dong(Workshop& workshop) {
     const FitResult convex = drawn_fit(polygon, options, workshop, "pia_convex", {0, 4});
     return {
         {"Table 1, Fig. 3, helix",
-         line(helix, {"1.9603", "2.8645e-1", "6.6263e-3", "3.7651e-5", "2.1624e-7"})},
+         line(helix, {"1.9603", "2.8645e-1", "6.6263e-3", "3.7651e-5", "2.1624e-7"}),
+         Data::stand_in, "the helix (6 cos t, 6 sin t, 2 t), t on [0, 8 pi], 20 points",
+         "pia_helix_*.svg"},
         {"Table 1, Fig. 4", {}, Data::none, "a free curve whose points are not printed"},
         {"Table 1, Fig. 5, and the figure",
          {{"inflections of the polygon, plain PIA", "", inflections(plain)},
@@ -85,7 +87,8 @@ std::vector<Table> lin_wang_dong(Workshop& workshop) {
          "12 uneven points on an ellipse",
          "pia_plain_*.svg, pia_convex_*.svg"},
         {"Table 1, Fig. 6, peaks",
-         line(peaks, {"33.628", "3.5526e-1", "1.7233e-1", "1.5282e-2", "1.2695e-3"})},
+         line(peaks, {"33.628", "3.5526e-1", "1.7233e-1", "1.5282e-2", "1.2695e-3"}),
+         Data::stand_in, "peaks over [-3, 3] x [-4, 4], 30 x 30 points", "pia_peaks_*.svg"},
     };
 }
 

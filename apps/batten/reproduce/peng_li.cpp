@@ -16,7 +16,10 @@ namespace {
 FitResult run(const Experiment& experiment, std::string_view method, Settings settings = {}) {
     FitOptions options = experiment.options;
     options.method.name = method;
-    if (method == "alspia") settings["cycle"] = 10000;
+    if (method == "alspia") { // the authors' cycle, and their gradients on missing data, too
+        settings["cycle"] = 10000;
+        settings["row_sums"] = 0;
+    }
     if (method == "cg") settings["plain"] = 1;
     if (method == "lspia" || method == "alspia" || method == "mlspia" || method == "nmlspia")
         settings["eigenvalue_tolerance"] = 1e-10;

@@ -188,6 +188,16 @@ void add_held(Request request, Ask& ask) {
     }
 }
 
+/// Where a method with memory starts by itself; any control points for one that is refused them.
+PointSet start_of(const Ask& ask) {
+    const SampleKind kind = problem_of(ask.samples, ask.options).kind;
+    if (!driver(ask.options.method.name).takes(kind)->has(Request::memory))
+        return PointSet(12, ask.samples.dim());
+    FitOptions unmoved = ask.options;
+    unmoved.stop.max_iterations = 0;
+    return fit(ask.samples, unmoved).spline.free_control_points();
+}
+
 void add(Request request, Ask& ask) {
     FitOptions& options = ask.options;
     add_to_space(request, ask);
@@ -230,16 +240,12 @@ void add(Request request, Ask& ask) {
     case Request::stop:
         options.stop.max_iterations = 2;
         return;
-    case Request::memory: { // the last of all, after what decides on the spline space
-        FitOptions unmoved = options;
-        unmoved.stop = {.max_iterations = 0};
-        const Spline start = fit(ask.samples, unmoved).spline;
+    case Request::memory: // the last of all, after what decides on the spline space
         options.method.initial = Initial::given;
-        options.method.control = start.free_control_points();
-        options.method.before = start.free_control_points();
+        options.method.control = start_of(ask);
+        options.method.before = options.method.control;
         for (double& x : options.method.before.values()) x *= 0.999;
         return;
-    }
     default:
         return;
     }
