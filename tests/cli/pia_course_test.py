@@ -40,6 +40,11 @@ class Course(InFolder):
         knots, _, summary = self.pia(data, "-n", count, "-p", degree, "--parameters", "t.txt", "--max-iterations", 1, *more)
         return BSpline.design_matrix(t, knots, degree).toarray(), summary
 
+    def said(self, summary):
+        """How far off the predicted rate may be; notes have one digit."""
+        note = re.search(r"the predicted rate is known to (\S+) only", " ".join(summary.get("notes", [])))
+        return 1.5 * float(note[1]) if note else 1e-6
+
     def test_predicted_rates_are_as_exact_as_is_said(self):
         seen = 0
         for count in (20, 85, 150, 300, 700):
@@ -47,10 +52,9 @@ class Course(InFolder):
                 for degree in (2, 3, 5):
                     matrix, summary = self.square(count, spread, degree)
                     expected = abs(1 - np.linalg.eigvals(matrix)).max()
-                    note = re.search(r"the predicted rate is known to (\S+) only", " ".join(summary.get("notes", [])))
-                    allowed = float(note[1]) if note else 1e-6
-                    seen += note is None
-                    self.assertLess(abs(summary["predicted_rate"] - expected), max(1.1 * allowed, 1e-6), (count, spread, degree))
+                    allowed = self.said(summary)
+                    seen += allowed == 1e-6
+                    self.assertLess(abs(summary["predicted_rate"] - expected), allowed, (count, spread, degree))
         self.assertGreater(seen, 25)
 
     def test_the_best_weight_is_lus(self):
@@ -62,7 +66,7 @@ class Course(InFolder):
                 self.assertAlmostEqual(values.real.max(), 1)
                 weight = 2 / (1 + values.real.min())
                 self.assertAlmostEqual(summary["settings"]["weight"], weight, delta=1e-5)
-                self.assertAlmostEqual(summary["predicted_rate"], (1 - values.real.min()) / (1 + values.real.min()), delta=1e-5)
+                self.assertAlmostEqual(summary["predicted_rate"], (1 - values.real.min()) / (1 + values.real.min()), delta=self.said(summary))
 
     def test_the_best_weight_of_chosen_control_points_is_best_of_all(self):
         chosen = list(range(5, 13))
