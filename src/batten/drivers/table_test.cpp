@@ -195,6 +195,7 @@ PointSet start_of(const Ask& ask) {
         return PointSet(12, ask.samples.dim());
     FitOptions unmoved = ask.options;
     unmoved.stop.max_iterations = 0;
+    unmoved.method.control = {};
     return fit(ask.samples, unmoved).spline.free_control_points();
 }
 
@@ -241,8 +242,8 @@ void add(Request request, Ask& ask) {
         options.stop.max_iterations = 2;
         return;
     case Request::memory: // the last of all, after what decides on the spline space
-        options.method.initial = Initial::given;
         options.method.control = start_of(ask);
+        options.method.initial = Initial::given;
         options.method.before = options.method.control;
         for (double& x : options.method.before.values()) x *= 0.999;
         return;
