@@ -1,32 +1,38 @@
 #include <batten/drivers/epia_axis.hpp>
 
+#include <batten/core/grid_index.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <limits>
 
 namespace batten {
 
-EpiaAxis::EpiaAxis(int degree, std::vector<double> parameters, std::vector<double> curvature,
-                   std::vector<Index> controls, std::vector<Index> alone)
+EpiaAxis::EpiaAxis(int degree, Line line, std::vector<Index> controls, std::vector<Index> alone,
+                   Index least)
     : degree_(degree),
-      parameters_(std::move(parameters)),
-      curvature_(std::move(curvature)),
+      line_(std::move(line)),
       controls_(std::move(controls)),
       alone_(std::move(alone)) {
-    const auto m = static_cast<Index>(parameters_.size());
-    if (m < degree + 1)
+    if (sample_count() < degree + 1)
         throw InvalidInput(
             fmt::format("epia: degree {} needs at least {} distinct samples along an axis, got {}",
-                        degree, degree + 1, m));
-    for (Index sample : alone_)
-        if (!has(sample)) insert(sample);
-    while (static_cast<Index>(controls_.size()) < degree + 1) { // halve the widest gap
+                        degree, degree + 1, sample_count()));
+    std::ranges::sort(alone_);
+    insert(alone_);
+    std::vector<Index> between;
+    for (std::size_t i = 1; i < controls_.size(); ++i)
+        if (is_alone(controls_[i - 1]) && is_alone(controls_[i]))
+            between.push_back((controls_[i - 1] + controls_[i]) / 2); // own already if neighbours
+    insert(std::move(between));
+    while (control_count() < std::max<Index>(least, degree + 1)) { // halve the widest gap
         std::size_t widest = 1;
         for (std::size_t i = 1; i < controls_.size(); ++i)
             if (controls_[i] - controls_[i - 1] > controls_[widest] - controls_[widest - 1])
                 widest = i;
-        insert((controls_[widest] + controls_[widest - 1]) / 2);
+        insert({(controls_[widest] + controls_[widest - 1]) / 2});
     }
 }
 
@@ -35,23 +41,28 @@ bool EpiaAxis::has(Index sample) const {
 }
 
 bool EpiaAxis::is_alone(Index sample) const {
-    return std::ranges::find(alone_, sample) != alone_.end();
+    return std::ranges::binary_search(alone_, sample);
 }
 
-void EpiaAxis::insert(Index sample) {
-    controls_.insert(std::ranges::upper_bound(controls_, sample), sample);
+bool EpiaAxis::insert(std::vector<Index> samples) {
+    std::ranges::sort(samples);
+    samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
+    std::vector<Index> all;
+    std::ranges::set_union(controls_, samples, std::back_inserter(all));
+    controls_.swap(all);
+    return controls_.size() > all.size();
 }
 
 Index EpiaAxis::fence(Index s, Index e) const {
     if (is_alone(s)) return s + 1;
     if (is_alone(e) || e == s + 1) return e;
-    const auto k = [&](Index j) { return curvature_[static_cast<std::size_t>(j)]; };
+    const auto k = [&](Index j) { return line_.curvature[static_cast<std::size_t>(j)]; };
     const auto [low, high] =
-        std::minmax_element(curvature_.begin() + s, curvature_.begin() + e + 1);
+        std::minmax_element(line_.curvature.begin() + s, line_.curvature.begin() + e + 1);
     const double flattest = *low;
     const double range = *high - flattest;
     const auto term = [&](Index j) {
-        const double bent = range > 0 ? (k(j) - flattest) / range : 0;
+        const double bent = range > line_.noise ? (k(j) - flattest) / range : 0;
         return std::exp(bent) * (parameter(j) - parameter(s)) / (parameter(e) - parameter(s));
     };
     double total = 0;
@@ -73,7 +84,7 @@ Index EpiaAxis::fence(Index s, Index e) const {
 std::vector<SampleRange> EpiaAxis::groups() const {
     std::vector<SampleRange> result(controls_.size());
     result.front().begin = 0;
-    result.back().end = static_cast<Index>(parameters_.size());
+    result.back().end = sample_count();
     for (std::size_t i = 1; i < controls_.size(); ++i)
         result[i - 1].end = result[i].begin = fence(controls_[i - 1], controls_[i]);
     return result;
@@ -83,6 +94,37 @@ KnotVector EpiaAxis::knots() const {
     std::vector<double> own;
     for (Index control : controls_) own.push_back(parameter(control));
     return averaged_knots(own, degree_);
+}
+
+std::vector<KnotVector> knots_of(const std::vector<EpiaAxis>& axes) {
+    std::vector<KnotVector> result;
+    for (const EpiaAxis& axis : axes) result.push_back(axis.knots());
+    return result;
+}
+
+std::vector<std::vector<SampleRange>> groups_of(const std::vector<EpiaAxis>& axes) {
+    std::vector<std::vector<SampleRange>> result;
+    for (const EpiaAxis& axis : axes) result.push_back(axis.groups());
+    return result;
+}
+
+std::vector<Index> shape_of(const std::vector<EpiaAxis>& axes) {
+    std::vector<Index> result;
+    for (const EpiaAxis& axis : axes) result.push_back(axis.control_count());
+    return result;
+}
+
+PointSet own_samples(const std::vector<EpiaAxis>& axes, const Samples& samples) {
+    const GridIndex net(shape_of(axes));
+    const GridIndex grid(samples.shape());
+    PointSet result(net.size(), samples.dim());
+    net.for_each([&](const GridIndex::Place& place, Index i) {
+        GridIndex::Place sample{};
+        for (std::size_t k = 0; k < axes.size(); ++k)
+            sample[k] = axes[k].controls()[static_cast<std::size_t>(place[k])];
+        std::ranges::copy(samples.points[grid.at(sample)], result[i].begin());
+    });
+    return result;
 }
 
 } // namespace batten

@@ -37,7 +37,7 @@ std::vector<Driver> table() {
     const Requests solved = space | least_squares_terms | held | course;
     const Requests interpolating = space | course | Requests{local};
     const Requests remembering{memory};
-    const Requests grown{size, history, stop, outliers};
+    const Requests grown{size, samples, tolerance, weights, start, local, history, stop, outliers};
     return {
         {method_entry("direct"), solved | curves, solved | boundary, solved - rules,
          fit_least_squares},
@@ -47,8 +47,8 @@ std::vector<Driver> table() {
          fit_least_squares},
         {method_entry("pia"), interpolating | Requests{shape}, interpolating, std::nullopt,
          fit_pia},
-        {method_entry("epia"), grown | Requests{samples, shape, parameters},
-         grown | Requests{parameters}, grown | Requests{knots, start}, fit_epia},
+        {method_entry("epia"), grown | Requests{shape, parameters}, grown | Requests{parameters},
+         grown | Requests{knots}, fit_epia},
         iteration("cg"),
         iteration("chebyshev"),
         iteration("nesterov", remembering),

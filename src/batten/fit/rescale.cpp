@@ -91,6 +91,7 @@ FitResult rescaled(FitResult result, double factor) {
         entry.gradient_norm *= factor;
         entry.largest_move *= factor;
         entry.max_deviation *= factor;
+        entry.largest_mean *= factor;
         entry.constraint_error *= factor * factor;
     }
     for (Frame& frame : report.frames) frame.control = scaled(std::move(frame.control), factor);

@@ -38,6 +38,12 @@ void check(const StopRule& stop) {
         if (!std::isfinite(value) || value < 0) refuse(name, value);
 }
 
+double observed_rate(const std::vector<double>& norms) {
+    const std::size_t half = norms.size() / 2;
+    if (norms.size() < 4 || !(norms[half] > 0) || !(norms.back() > 0)) return 0;
+    return std::pow(norms.back() / norms[half], 1.0 / static_cast<double>(norms.size() - 1 - half));
+}
+
 namespace {
 
 /// The absolute control points, computed where they are looked at.
@@ -63,12 +69,6 @@ StopTests tests(const StopRule& stop, const Summary& now) {
             .relative_gradient = stop.relative_gradient > 0 &&
                                  now.gradient_norm <= stop.relative_gradient * now.reference_norm,
             .deviation = now.deviation && *now.deviation <= stop.deviation};
-}
-
-double observed_rate(const std::vector<double>& norms) {
-    const std::size_t half = norms.size() / 2;
-    if (norms.size() < 4 || !(norms[half] > 0) || !(norms.back() > 0)) return 0;
-    return std::pow(norms.back() / norms[half], 1.0 / static_cast<double>(norms.size() - 1 - half));
 }
 
 bool vanish(double largest_move, const PointSet& control) {

@@ -94,6 +94,10 @@ struct Summary {
     double observed_rate = 0;
 };
 
+/// Mean factor per iteration by which these gradient norms fall over the second half of a run; 0 of
+/// fewer than 4, or where one of them is 0.
+double observed_rate(const std::vector<double>& norms);
+
 /// Moves `control` (N x dim) by the method until a test of the stop rule holds and so do the
 /// method's constraints: the one loop of all methods. Throws InvalidInput for a stop rule that is
 /// no such thing.

@@ -89,11 +89,13 @@ constexpr MethodSetting epia_settings[]{
     {"t_c", "longest move e_c below which a knot is inserted",
      "0.9 of the stop deviation, else 2.5e-3 of the data's size", positive,
      "Lin, Zhang 2011, Algorithm 1"},
-    {"rounds", "most rounds of the validation check", 2.0, counts, "Lin, Zhang 2011, section 4"},
+    {"rounds", "most rounds of the validation check, which goes on until it holds", 100.0, counts,
+     "Lin, Zhang 2011, section 4"},
     {"smoothing", "widest Gaussian of the curvature, in samples", 4.0, counts,
      "Lin, Zhang 2011, section 4"},
     {"exact", "1: keep the refined knots instead of regenerating them", 0.0, switched,
      "Lin, Zhang 2011, eq. 38"},
+    {"screen", "0: every maximum of the curvature is dominant, noise or not", 1.0, switched},
 };
 
 constexpr MethodSetting cg_settings[]{

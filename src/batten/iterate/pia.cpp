@@ -31,6 +31,7 @@ void Pia::keep_chosen(PointSet& moves) const {
 }
 
 void Pia::start(PointSet& control) {
+    if (divergence_ == Divergence::unasked) return;
     const VectorOperator wa = [&](const std::vector<double>& in, std::vector<double>& out) {
         out = std::move(image(PointSet(in, 1)).values());
     };
@@ -104,24 +105,26 @@ const PointSet& Pia::propose(const PointSet& control) {
     return moves_;
 }
 
-std::vector<bool> Pia::valid(double eta) const {
+std::vector<bool> Pia::valid(double eta, double noise) const {
     const SampleGroups& groups = data_.groups();
     PointSet sum(groups.size(), residual_.dim());
     std::vector<double> lengths(static_cast<std::size_t>(groups.size()));
+    std::vector<double> spare = lengths; // of the squares, beside what noise makes
     groups.for_each_member([&](Index control, Index sample) {
+        const double weight = groups.weight(sample);
         double square = 0;
         for (Index d = 0; d < residual_.dim(); ++d) {
-            sum(control, d) += residual_(sample, d);
+            sum(control, d) += weight * residual_(sample, d);
             square += residual_(sample, d) * residual_(sample, d);
         }
-        lengths[static_cast<std::size_t>(control)] += std::sqrt(square);
+        lengths[static_cast<std::size_t>(control)] += weight * std::sqrt(square);
+        spare[static_cast<std::size_t>(control)] += noise * noise - square;
     });
     std::vector<bool> result(lengths.size());
     for (std::size_t i = 0; i < lengths.size(); ++i) {
         double square = 0;
         for (double x : sum[static_cast<Index>(i)]) square += x * x;
-        result[i] =
-            lengths[i] == 0 || std::sqrt(square) / lengths[i] > eta; // no residual at all is valid
+        result[i] = spare[i] >= 0 || std::sqrt(square) / lengths[i] > eta;
     }
     return result;
 }

@@ -12,12 +12,13 @@ namespace batten {
 enum class Divergence {
     refused,
     allowed, ///< the caller ends the run before it matters
+    unasked, ///< the same, and the rate is not computed
 };
 
 /// Progressive-iterative approximation: every control point moves by the residual of its own sample
 /// [LinWangDong2004, eq. 4 and 5; surfaces eq. 16 and 17], times a factor [Lu2010], or by the
-/// mean residual of its group (EPIA [LinZhang2011, eq. 8 to 10; patches eq. 20 to 23]). Which of
-/// them the DataSide's groups decide.
+/// (weighted) mean residual of its group (EPIA [LinZhang2011, eq. 8 to 10; patches eq. 20 to 23]).
+/// Which of them the DataSide's groups decide.
 class Pia : public Method {
   public:
     /// `weight`: the factor of every move; none: the one of the least rate. `chosen`: only these
@@ -45,8 +46,9 @@ class Pia : public Method {
     /// 26].
     const PointSet& data_means() const { return means_; }
     /// Whether the validation condition holds for each control point at the last propose()
-    /// [LinZhang2011, eq. 47].
-    std::vector<bool> valid(double eta) const;
+    /// [LinZhang2011, eq. 47]; it does where residuals are no longer than `noise` in the mean
+    /// square.
+    std::vector<bool> valid(double eta, double noise = 0) const;
 
   private:
     void keep_chosen(PointSet& moves) const;

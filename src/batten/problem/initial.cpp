@@ -90,6 +90,36 @@ Nearest nearest_control(std::span<const double> parameter, const std::vector<Kno
     return result;
 }
 
+/// The control point nearest to a sample or, where it is taken, the nearest of its neighbours that
+/// is free; -1 where none is.
+Index nearest_free(std::span<const double> parameter, const std::vector<KnotVector>& axes,
+                   const std::vector<std::vector<double>>& greville,
+                   const std::vector<bool>& taken) {
+    const Index own = nearest_control(parameter, axes, greville).control;
+    if (!taken[static_cast<std::size_t>(own)]) return own;
+    const GridIndex net(free_shape(axes));
+    const GridIndex::Place middle = net.place(own);
+    Index best = -1;
+    double closest = std::numeric_limits<double>::infinity();
+    GridIndex(std::vector<Index>(axes.size(), 3))
+        .for_each([&](const GridIndex::Place& step, Index) {
+            GridIndex::Place place = middle;
+            double away = 0;
+            for (std::size_t a = 0; a < axes.size(); ++a) {
+                place[a] += step[a] - 1;
+                if (place[a] < 0 || place[a] >= net.length(a)) return;
+                away += std::abs(axes[a].wrapped(parameter[a]) -
+                                 greville[a][static_cast<std::size_t>(place[a])]) /
+                        axes[a].length();
+            }
+            const Index at = net.at(place);
+            if (taken[static_cast<std::size_t>(at)] || away >= closest) return;
+            closest = away;
+            best = at;
+        });
+    return best;
+}
+
 /// The sample nearest in the parameters to each control point's Greville abscissae.
 PointSet nearest_samples(const Samples& samples, const Parameters& parameters,
                          const std::vector<KnotVector>& axes, PointSet control) {
@@ -109,12 +139,26 @@ PointSet nearest_samples(const Samples& samples, const Parameters& parameters,
 
 } // namespace
 
-SampleGroups nearest_groups(const Parameters& parameters, const std::vector<KnotVector>& axes) {
+std::vector<Index> nearest_controls(const Parameters& parameters,
+                                    const std::vector<KnotVector>& axes,
+                                    const std::vector<Index>& alone) {
     const auto greville = free_greville(axes);
-    std::vector<Index> owner;
+    const GridIndex net(free_shape(axes));
+    std::vector<bool> taken(static_cast<std::size_t>(net.size()));
+    std::vector<Index> owner(static_cast<std::size_t>(parameters.scattered.size()), -1);
+    for (Index j : alone) {
+        const Index control = nearest_free(parameters.scattered[j], axes, greville, taken);
+        if (control < 0)
+            throw InvalidInput(fmt::format("sample {} finds no control point of its own to be "
+                                           "interpolated by: more control points are needed",
+                                           j));
+        owner[static_cast<std::size_t>(j)] = control;
+        taken[static_cast<std::size_t>(control)] = true;
+    }
     for (Index j = 0; j < parameters.scattered.size(); ++j)
-        owner.push_back(nearest_control(parameters.scattered[j], axes, greville).control);
-    return {std::move(owner), GridIndex(free_shape(axes)).size()};
+        if (Index& own = owner[static_cast<std::size_t>(j)]; own < 0)
+            own = nearest_free(parameters.scattered[j], axes, greville, taken);
+    return owner;
 }
 
 namespace {

@@ -16,6 +16,8 @@ struct HistoryEntry {
     double largest_move;
     double max_deviation;    ///< of a sample at its parameter
     double constraint_error; ///< sum of squares; 0 without constraints
+    Index control_points = 0; ///< in all, where an iteration changes their number; else 0
+    double largest_mean = 0;  ///< longest mean residual of a group, e_c of EPIA; else 0
 };
 
 /// Something that was stated and that the fit must reach.

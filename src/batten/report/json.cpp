@@ -15,12 +15,18 @@ Json number(double x) {
 
 Json history_json(const std::vector<HistoryEntry>& history) {
     Json rows = Json::array();
-    for (const HistoryEntry& entry : history)
-        rows.push_back({{"iteration", entry.iteration},
-                        {"gradient_norm", number(entry.gradient_norm)},
-                        {"largest_move", number(entry.largest_move)},
-                        {"max_deviation", number(entry.max_deviation)},
-                        {"constraint_error", number(entry.constraint_error)}});
+    for (const HistoryEntry& entry : history) {
+        Json row{{"iteration", entry.iteration},
+                 {"gradient_norm", number(entry.gradient_norm)},
+                 {"largest_move", number(entry.largest_move)},
+                 {"max_deviation", number(entry.max_deviation)},
+                 {"constraint_error", number(entry.constraint_error)}};
+        if (entry.control_points > 0) {
+            row["control_points"] = entry.control_points;
+            row["largest_mean"] = number(entry.largest_mean);
+        }
+        rows.push_back(std::move(row));
+    }
     return rows;
 }
 

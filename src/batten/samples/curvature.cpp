@@ -1,9 +1,11 @@
 #include <batten/samples/curvature.hpp>
 
 #include <batten/core/vectors.hpp>
+#include <batten/samples/noise.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace batten {
 
@@ -50,9 +52,15 @@ PointSet smoothed(const Points& sequence, Index widest) {
     return result;
 }
 
+/// How large |a x b| of first and second differences can be of straight samples with this error.
+double unsure(const std::vector<double>& a, const std::vector<double>& b, double error) {
+    const double rounding = 8 * std::sqrt(std::numeric_limits<double>::epsilon());
+    return norm(a) * (4 * error + rounding * norm(b));
+}
+
 } // namespace
 
-std::vector<double> discrete_curvature(const Points& sequence, Index widest) {
+std::vector<double> discrete_curvature(const Points& sequence, Index widest, double error) {
     const PointSet p = smoothed(sequence, widest);
     const Index m = p.size();
     std::vector<double> curvature(static_cast<std::size_t>(m));
@@ -65,8 +73,9 @@ std::vector<double> discrete_curvature(const Points& sequence, Index widest) {
         // |a x b|^2 = |a|^2 |b|^2 - (a.b)^2 in any dimension
         const double square = dot(first, first);
         const double cross = square * dot(second, second) - dot(first, second) * dot(first, second);
-        curvature[static_cast<std::size_t>(j)] =
-            square > 0 ? std::sqrt(std::max(0.0, cross)) / std::pow(square, 1.5) : 0;
+        const double area = std::sqrt(std::max(0.0, cross));
+        if (square > 0 && (error == 0 || area > unsure(first, second, error)))
+            curvature[static_cast<std::size_t>(j)] = area / std::pow(square, 1.5);
     }
     if (m > 2) {
         curvature.front() = curvature[1];
@@ -83,6 +92,31 @@ std::vector<Index> dominant_indices(const std::vector<double>& k) {
             result.push_back(static_cast<Index>(j));
     result.push_back(static_cast<Index>(k.size()) - 1);
     return result;
+}
+
+std::vector<Index> dominant_indices(const std::vector<double>& k, double rise) {
+    std::vector<Index> result{0};
+    std::size_t low = 0; // the last minimum, then the maximum after it
+    std::size_t high = 0;
+    bool rising = false;
+    for (std::size_t j = 1; j < k.size(); ++j) {
+        if (rising ? k[j] > k[high] : k[j] < k[low]) (rising ? high : low) = j;
+        if (rising && k[high] - k[j] > rise) {
+            result.push_back(static_cast<Index>(high));
+            low = j;
+            rising = false;
+        } else if (!rising && k[j] - k[low] > rise) {
+            high = j;
+            rising = true;
+        }
+    }
+    result.push_back(static_cast<Index>(k.size()) - 1);
+    return result;
+}
+
+double span_of_noise(const std::vector<double>& values) {
+    const double most = std::sqrt(2 * std::log(static_cast<double>(values.size())));
+    return 2 * most * usual_noise(PointSet(values, 1));
 }
 
 } // namespace batten

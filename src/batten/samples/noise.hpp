@@ -16,4 +16,8 @@ double noise_bound(const Points& sequence);
 /// The same by the median of the third differences: gaps and corners do not count.
 double usual_noise(const Points& sequence);
 
+/// The least of these over the axes of a sequence or a grid of that shape, where it is white noise:
+/// neighbouring third differences are as anticorrelated as its own along every axis; else 0.
+double white_noise(const Points& samples, const std::vector<Index>& shape);
+
 } // namespace batten

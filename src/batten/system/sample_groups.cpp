@@ -5,8 +5,8 @@
 namespace batten {
 
 SampleGroups::SampleGroups(std::vector<std::vector<SampleRange>> ranges,
-                           const std::vector<Index>& shape)
-    : ranges_(std::move(ranges)), shape_(shape) {
+                           const std::vector<Index>& shape, std::vector<double> weights)
+    : ranges_(std::move(ranges)), shape_(shape), weights_(std::move(weights)) {
     Index controls = 1;
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis) {
         controls *= static_cast<Index>(ranges_[axis].size());
@@ -16,26 +16,31 @@ SampleGroups::SampleGroups(std::vector<std::vector<SampleRange>> ranges,
                 throw InvalidInput(fmt::format(
                     "axis {}: the group of control point {} would hold no samples", axis, i));
     }
-    count_.assign(static_cast<std::size_t>(controls), 0);
-    for_each_member([&](Index control, Index) { count_[static_cast<std::size_t>(control)] += 1; });
+    count(controls);
 }
 
-SampleGroups::SampleGroups(std::vector<Index> owner, Index controls)
-    : owner_(std::move(owner)), count_(static_cast<std::size_t>(controls)) {
-    for (Index control : owner_) count_[static_cast<std::size_t>(control)] += 1;
-    for (std::size_t i = 0; i < count_.size(); ++i)
-        if (count_[i] == 0)
-            throw InvalidInput(
-                fmt::format("the group of control point {} would hold no samples", i));
+SampleGroups::SampleGroups(std::vector<Index> owner, Index controls, std::vector<double> weights)
+    : owner_(std::move(owner)), weights_(std::move(weights)) {
+    count(controls);
+}
+
+void SampleGroups::count(Index controls) {
+    total_.assign(static_cast<std::size_t>(controls), 0);
+    for_each_member([&](Index control, Index sample) {
+        total_[static_cast<std::size_t>(control)] += weight(sample);
+    });
 }
 
 PointSet SampleGroups::means(const PointSet& values) const {
     PointSet result(size(), values.dim());
     for_each_member([&](Index control, Index sample) {
-        for (Index d = 0; d < values.dim(); ++d) result(control, d) += values(sample, d);
+        const double weight = this->weight(sample);
+        for (Index d = 0; d < values.dim(); ++d) result(control, d) += weight * values(sample, d);
     });
-    for (Index i = 0; i < size(); ++i)
-        for (double& x : result[i]) x /= count_[static_cast<std::size_t>(i)];
+    for (Index i = 0; i < size(); ++i) {
+        const double total = total_[static_cast<std::size_t>(i)];
+        for (double& x : result[i]) x = total > 0 ? x / total : 0;
+    }
     return result;
 }
 

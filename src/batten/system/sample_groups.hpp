@@ -19,25 +19,34 @@ struct SampleRange {
 class SampleGroups {
   public:
     /// A sequence or grid: per axis and control point a run of samples; a grid's groups are
-    /// products of runs. Throws InvalidInput naming a control point whose run is empty or beyond
-    /// the samples.
-    SampleGroups(std::vector<std::vector<SampleRange>> ranges, const std::vector<Index>& shape);
-    /// A cloud: the control point of every sample; throws InvalidInput naming one without samples.
-    SampleGroups(std::vector<Index> owner, Index controls);
+    /// products of runs. `weights`: one per sample, positive, or none for ones. Throws InvalidInput
+    /// naming a control point whose run is empty or beyond the samples.
+    SampleGroups(std::vector<std::vector<SampleRange>> ranges, const std::vector<Index>& shape,
+                 std::vector<double> weights = {});
+    /// A cloud: the control point of every sample, -1 of one in no group. A control point without
+    /// samples does not move.
+    SampleGroups(std::vector<Index> owner, Index controls, std::vector<double> weights = {});
 
     /// Control points N.
-    Index size() const { return static_cast<Index>(count_.size()); }
-    /// Means over the groups of per-sample values (m x dim): (N x dim).
+    Index size() const { return static_cast<Index>(total_.size()); }
+    /// 1 without weights.
+    double weight(Index sample) const {
+        return weights_.empty() ? 1 : weights_[static_cast<std::size_t>(sample)];
+    }
+    /// Weighted means over the groups of per-sample values (m x dim): (N x dim).
     PointSet means(const PointSet& values) const;
     /// Calls `member(control, sample)` for every member of every group.
     template <class Member>
     void for_each_member(Member member) const;
 
   private:
+    void count(Index controls);
+
     std::vector<std::vector<SampleRange>> ranges_;
     std::vector<Index> shape_;
     std::vector<Index> owner_;
-    std::vector<double> count_;
+    std::vector<double> weights_;
+    std::vector<double> total_; ///< weight per group
 };
 
 /// The residual Q - A P of every sample and its image W(Q - A P): the data-side form of a geometric
@@ -67,7 +76,8 @@ class DataSide {
 template <class Member>
 void SampleGroups::for_each_member(Member member) const {
     if (!owner_.empty()) {
-        for (std::size_t j = 0; j < owner_.size(); ++j) member(owner_[j], static_cast<Index>(j));
+        for (std::size_t j = 0; j < owner_.size(); ++j)
+            if (owner_[j] >= 0) member(owner_[j], static_cast<Index>(j));
         return;
     }
     const auto visit = [&](auto&& self, std::size_t axis, Index control, Index sample) -> void {
