@@ -265,7 +265,7 @@ class Refusals(Command):
 
 
     def test_methods_that_need_more(self):
-        self.bad(2, "epia: state where to stop: a stop deviation or a number of control points", "fit", "r.csv", "--method", "epia")
+        self.bad(2, "epia: state where to stop: a stop deviation, a tolerance or a number of control points", "fit", "r.csv", "--method", "epia")
         self.bad(2, "axis 0: pia needs as many control points as samples, got 8 and 30", "fit", "r.csv", "--method", "pia", "-n", 8)
         self.bad(2, "interpolated sample 30: the samples are 0 to 29", "fit", "r.csv", "-n", 8, "--interpolate", "0,30")
         self.bad(2, "interpolated sample 4 is given twice", "fit", "r.csv", "-n", 8, "--interpolate", "4,4")

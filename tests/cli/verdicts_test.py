@@ -136,7 +136,7 @@ class Goals(Verdicts):
             self.assertAlmostEqual(report["max_deviation"] / away, 1, 6)
 
     def test_pia_refuses_a_tolerance(self):
-        self.refused("method pia cannot fit to a tolerance; search can", self.save("w.csv", wave(30)), "-m", "pia", "-t", 0.01)
+        self.refused("method pia cannot fit to a tolerance; epia, search can", self.save("w.csv", wave(30)), "-m", "pia", "-t", 0.01)
 
     def test_a_deviation_stated_alone_is_a_tolerance(self):
         data = wave(200)

@@ -100,7 +100,8 @@ TEST(LinZhang, refusals) {
     const Samples rose = generate("rose");
     FitOptions options = epia(0, 0.6);
     EXPECT_EQ(testing::message_of<InvalidInput>([&] { fit(rose, options); }),
-              "epia: state where to stop: a stop deviation or a number of control points");
+              "epia: state where to stop: a stop deviation, a tolerance or a number of "
+              "control points");
     options.shape.control_points = {30};
     options.method.settings.clear();
     options.shape.parameters = Parameters{{}, PointSet({0, 0, 1, 1}, 2)};

@@ -44,6 +44,13 @@ bool EpiaAxis::is_alone(Index sample) const {
     return std::ranges::binary_search(alone_, sample);
 }
 
+Index EpiaAxis::nearest_free(Index sample) const {
+    for (Index away = 1; away < sample_count(); ++away)
+        for (Index at : {sample - away, sample + away})
+            if (at >= 0 && at < sample_count() && !has(at)) return at;
+    return sample;
+}
+
 bool EpiaAxis::insert(std::vector<Index> samples) {
     std::ranges::sort(samples);
     samples.erase(std::unique(samples.begin(), samples.end()), samples.end());

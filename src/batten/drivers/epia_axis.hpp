@@ -28,6 +28,8 @@ class EpiaAxis {
     Index control_count() const { return static_cast<Index>(controls_.size()); }
     Index sample_count() const { return static_cast<Index>(line_.parameters.size()); }
     bool has(Index sample) const;
+    /// The sample nearest by index that is no control point's own; the given one where all are.
+    Index nearest_free(Index sample) const;
     /// Makes samples control points' own, in any order; the fence around them follows. Whether any
     /// was not one already.
     bool insert(std::vector<Index> samples);

@@ -74,21 +74,29 @@ class Incremental {
                });
     }
 
-    /// The farthest sample of those that are not control points' own along every axis.
+    /// The farthest sample of those that are not control points' own along every axis. Where
+    /// samples have their own precision the rest may be good enough already: then a neighbour of
+    /// the farthest that is a control point's own.
     GridIndex::Place worst(const PointSet& residual) const {
-        GridIndex::Place place{};
+        GridIndex::Place fresh{};
+        GridIndex::Place farthest{};
         double most = -1;
+        double most_of_all = -1;
         GridIndex(problem_.samples.shape()).for_each([&](const GridIndex::Place& at, Index j) {
             const double far = course_.far(residual, j);
+            if (far > most_of_all) farthest = at;
+            most_of_all = std::max(most_of_all, far);
             if (!(far > most)) return;
-            for (std::size_t k = 0; k < axes_.size(); ++k)
-                if (!axes_[k].has(at[k])) {
-                    place = at;
-                    most = far;
-                    return;
-                }
+            bool own = true;
+            for (std::size_t k = 0; k < axes_.size(); ++k) own = own && axes_[k].has(at[k]);
+            if (own) return;
+            fresh = at;
+            most = far;
         });
-        return place;
+        if (problem_.tolerance.empty() || most == most_of_all) return fresh;
+        for (std::size_t k = 0; k < axes_.size(); ++k)
+            farthest[k] = axes_[k].nearest_free(farthest[k]);
+        return farthest;
     }
 
     /// The spline with the worst sample's parameters inserted that are not control points' own yet.

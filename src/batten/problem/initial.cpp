@@ -40,23 +40,20 @@ Index nearest(const std::vector<double>& values, double t) {
                : after;
 }
 
-/// Gives control points without a sample of their own their nearest neighbour's, ring by ring along
-/// the axes.
-void fill_holes(PointSet& control, std::vector<double>& distances, const GridIndex& net) {
-    constexpr double unset = std::numeric_limits<double>::infinity();
+/// Gives control points without a sample of their own (-1) their nearest neighbour's, ring by ring
+/// along the axes.
+void fill_holes(std::vector<Index>& sample, const GridIndex& net) {
     for (bool holes = true; holes;) {
         holes = false;
-        const std::vector<double> before = distances;
+        const std::vector<Index> before = sample;
         net.for_each([&](const GridIndex::Place& place, Index i) {
-            if (before[static_cast<std::size_t>(i)] != unset) return;
+            if (before[static_cast<std::size_t>(i)] >= 0) return;
             holes = true;
             for (std::size_t a = net.axis_count(); a-- > 0;)
                 for (Index step : {-1, 1}) {
                     if (place[a] + step < 0 || place[a] + step >= net.length(a)) continue;
-                    const Index other = i + step * net.stride(a);
-                    if (before[static_cast<std::size_t>(other)] == unset) continue;
-                    std::ranges::copy(control[other], control[i].begin());
-                    distances[static_cast<std::size_t>(i)] = 0;
+                    const Index other = before[static_cast<std::size_t>(i + step * net.stride(a))];
+                    if (other >= 0) sample[static_cast<std::size_t>(i)] = other;
                 }
         });
     }
@@ -91,16 +88,15 @@ Nearest nearest_control(std::span<const double> parameter, const std::vector<Kno
 }
 
 /// The control point nearest to a sample or, where it is taken, the nearest of its neighbours that
-/// is free; -1 where none is.
-Index nearest_free(std::span<const double> parameter, const std::vector<KnotVector>& axes,
-                   const std::vector<std::vector<double>>& greville,
-                   const std::vector<bool>& taken) {
-    const Index own = nearest_control(parameter, axes, greville).control;
-    if (!taken[static_cast<std::size_t>(own)]) return own;
+/// is free; `control` -1 where none is.
+Nearest nearest_free(std::span<const double> parameter, const std::vector<KnotVector>& axes,
+                     const std::vector<std::vector<double>>& greville,
+                     const std::vector<bool>& taken) {
+    const Nearest own = nearest_control(parameter, axes, greville);
+    if (!taken[static_cast<std::size_t>(own.control)]) return own;
     const GridIndex net(free_shape(axes));
-    const GridIndex::Place middle = net.place(own);
-    Index best = -1;
-    double closest = std::numeric_limits<double>::infinity();
+    const GridIndex::Place middle = net.place(own.control);
+    Nearest best{-1, std::numeric_limits<double>::infinity()};
     GridIndex(std::vector<Index>(axes.size(), 3))
         .for_each([&](const GridIndex::Place& step, Index) {
             GridIndex::Place place = middle;
@@ -113,52 +109,64 @@ Index nearest_free(std::span<const double> parameter, const std::vector<KnotVect
                         axes[a].length();
             }
             const Index at = net.at(place);
-            if (taken[static_cast<std::size_t>(at)] || away >= closest) return;
-            closest = away;
-            best = at;
+            if (!taken[static_cast<std::size_t>(at)] && away < best.away) best = {at, away};
         });
     return best;
+}
+
+/// The samples in the groups, and the nearest of each control point's own, -1 of none.
+struct Nearness {
+    std::vector<GroupMember> members;
+    std::vector<Index> sample;
+};
+
+Nearness nearness(const Parameters& parameters, const std::vector<KnotVector>& axes,
+                  const std::vector<Index>& alone) {
+    const auto greville = free_greville(axes);
+    const auto total = static_cast<std::size_t>(GridIndex(free_shape(axes)).size());
+    std::vector<bool> taken(total);
+    std::vector<double> closest(total, std::numeric_limits<double>::infinity());
+    Nearness result{{}, std::vector<Index>(total, -1)};
+    const auto enter = [&](Index j) {
+        const Nearest own = nearest_free(parameters.scattered[j], axes, greville, taken);
+        if (own.control < 0) return own.control;
+        const auto at = static_cast<std::size_t>(own.control);
+        result.members.push_back({own.control, j});
+        if (own.away < closest[at]) result.sample[at] = j;
+        closest[at] = std::min(closest[at], own.away);
+        return own.control;
+    };
+    std::vector<bool> entered(static_cast<std::size_t>(parameters.scattered.size()));
+    for (Index j : alone) {
+        entered[static_cast<std::size_t>(j)] = true;
+        const Index control = enter(j);
+        if (control < 0)
+            throw InvalidInput(fmt::format("sample {} finds no control point of its own to be "
+                                           "interpolated by: more control points are needed",
+                                           j));
+        taken[static_cast<std::size_t>(control)] = true;
+    }
+    for (Index j = 0; j < parameters.scattered.size(); ++j)
+        if (!entered[static_cast<std::size_t>(j)]) enter(j);
+    return result;
 }
 
 /// The sample nearest in the parameters to each control point's Greville abscissae.
 PointSet nearest_samples(const Samples& samples, const Parameters& parameters,
                          const std::vector<KnotVector>& axes, PointSet control) {
-    const auto greville = free_greville(axes);
-    std::vector<double> distances(static_cast<std::size_t>(control.size()),
-                                  std::numeric_limits<double>::infinity());
-    for (Index j = 0; j < samples.size(); ++j) {
-        const Nearest found = nearest_control(parameters.scattered[j], axes, greville);
-        double& closest = distances[static_cast<std::size_t>(found.control)];
-        if (found.away >= closest) continue;
-        closest = found.away;
-        std::ranges::copy(samples.points[j], control[found.control].begin());
-    }
-    fill_holes(control, distances, GridIndex(free_shape(axes)));
+    std::vector<Index> sample = nearness(parameters, axes, {}).sample;
+    fill_holes(sample, GridIndex(free_shape(axes)));
+    for (Index i = 0; i < control.size(); ++i)
+        std::ranges::copy(samples.points[sample[static_cast<std::size_t>(i)]], control[i].begin());
     return control;
 }
 
 } // namespace
 
-std::vector<Index> nearest_controls(const Parameters& parameters,
-                                    const std::vector<KnotVector>& axes,
-                                    const std::vector<Index>& alone) {
-    const auto greville = free_greville(axes);
-    const GridIndex net(free_shape(axes));
-    std::vector<bool> taken(static_cast<std::size_t>(net.size()));
-    std::vector<Index> owner(static_cast<std::size_t>(parameters.scattered.size()), -1);
-    for (Index j : alone) {
-        const Index control = nearest_free(parameters.scattered[j], axes, greville, taken);
-        if (control < 0)
-            throw InvalidInput(fmt::format("sample {} finds no control point of its own to be "
-                                           "interpolated by: more control points are needed",
-                                           j));
-        owner[static_cast<std::size_t>(j)] = control;
-        taken[static_cast<std::size_t>(control)] = true;
-    }
-    for (Index j = 0; j < parameters.scattered.size(); ++j)
-        if (Index& own = owner[static_cast<std::size_t>(j)]; own < 0)
-            own = nearest_free(parameters.scattered[j], axes, greville, taken);
-    return owner;
+std::vector<GroupMember> nearest_groups(const Parameters& parameters,
+                                        const std::vector<KnotVector>& axes,
+                                        const std::vector<Index>& alone) {
+    return nearness(parameters, axes, alone).members;
 }
 
 namespace {

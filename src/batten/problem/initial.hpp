@@ -5,13 +5,13 @@
 
 namespace batten {
 
-/// Which control point each of a cloud's samples belongs to: that whose Greville abscissae are
+/// Groups of a cloud's samples: each belongs to the control point whose Greville abscissae are
 /// nearest. A sample of `alone` has its control point to itself; the others' samples go to the
-/// nearest of its neighbours, or, where none is left, nowhere (-1). Throws InvalidInput where two
-/// of `alone` find no control points of their own.
-std::vector<Index> nearest_controls(const Parameters& parameters,
-                                    const std::vector<KnotVector>& axes,
-                                    const std::vector<Index>& alone);
+/// nearest of its neighbours, or, where none is left, nowhere. Throws InvalidInput where two of
+/// `alone` find no control points of their own.
+std::vector<GroupMember> nearest_groups(const Parameters& parameters,
+                                        const std::vector<KnotVector>& axes,
+                                        const std::vector<Index>& alone = {});
 
 /// Free control points (N x dim) to start from.
 PointSet initial_control(const Samples& samples, const Parameters& parameters,

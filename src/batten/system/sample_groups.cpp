@@ -19,8 +19,9 @@ SampleGroups::SampleGroups(std::vector<std::vector<SampleRange>> ranges,
     count(controls);
 }
 
-SampleGroups::SampleGroups(std::vector<Index> owner, Index controls, std::vector<double> weights)
-    : owner_(std::move(owner)), weights_(std::move(weights)) {
+SampleGroups::SampleGroups(std::vector<GroupMember> members, Index controls,
+                           std::vector<double> weights)
+    : members_(std::move(members)), weights_(std::move(weights)) {
     count(controls);
 }
 

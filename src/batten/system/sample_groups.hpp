@@ -14,6 +14,12 @@ struct SampleRange {
     Index end;
 };
 
+/// A sample in a control point's group.
+struct GroupMember {
+    Index control;
+    Index sample;
+};
+
 /// Which samples' residuals move which control point: W of PIA (the control point's own sample) and
 /// of EPIA (the mean over the control point's group [LinZhang2011, eq. 9 and 22]).
 class SampleGroups {
@@ -23,9 +29,9 @@ class SampleGroups {
     /// naming a control point whose run is empty or beyond the samples.
     SampleGroups(std::vector<std::vector<SampleRange>> ranges, const std::vector<Index>& shape,
                  std::vector<double> weights = {});
-    /// A cloud: the control point of every sample, -1 of one in no group. A control point without
-    /// samples does not move.
-    SampleGroups(std::vector<Index> owner, Index controls, std::vector<double> weights = {});
+    /// A cloud: the members of all groups; a control point without any does not move.
+    SampleGroups(std::vector<GroupMember> members, Index controls,
+                 std::vector<double> weights = {});
 
     /// Control points N.
     Index size() const { return static_cast<Index>(total_.size()); }
@@ -44,7 +50,7 @@ class SampleGroups {
 
     std::vector<std::vector<SampleRange>> ranges_;
     std::vector<Index> shape_;
-    std::vector<Index> owner_;
+    std::vector<GroupMember> members_; ///< of a cloud
     std::vector<double> weights_;
     std::vector<double> total_; ///< weight per group
 };
@@ -75,11 +81,8 @@ class DataSide {
 
 template <class Member>
 void SampleGroups::for_each_member(Member member) const {
-    if (!owner_.empty()) {
-        for (std::size_t j = 0; j < owner_.size(); ++j)
-            if (owner_[j] >= 0) member(owner_[j], static_cast<Index>(j));
-        return;
-    }
+    for (const GroupMember& one : members_) member(one.control, one.sample);
+    if (ranges_.empty()) return;
     const auto visit = [&](auto&& self, std::size_t axis, Index control, Index sample) -> void {
         if (axis == ranges_.size()) return member(control, sample);
         const auto n = static_cast<Index>(ranges_[axis].size());
