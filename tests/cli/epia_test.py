@@ -121,13 +121,13 @@ class Start(Epia):
         u, v = np.meshgrid(np.arange(60.0), np.arange(70.0), indexing="ij")
         smooth = 30 * np.sin(u / 9) * np.cos(v / 11)
         noisy = smooth + np.random.default_rng(2).normal(size=u.shape)
-        for name, heights, words in (("hills", hills(60, 70), "there is detail, not noise"), ("noise", noisy, "they are noisy, by")):
+        for name, heights, words in (("hills", hills(60, 70), "have detail, not noise, between any two"), ("noise", noisy, "are noisy by")):
             asked = ["--stop-deviation", 1, "--max-iterations", 0]
             grid = np.stack([u, v, heights], -1)
             _, report = self.fit(grid, *asked)
             _, every = self.fit(grid, *asked, "--set", "screen=0")
             self.assertGreater(np.prod(every["control_shape"]), 0.4 * u.size, name)
-            self.assertLess(np.prod(report["control_shape"]), 0.1 * u.size, name)
+            self.assertLess(np.prod(report["control_shape"]), 0.13 * u.size, name)
             notes = " ".join(report["notes"])
             if "(47)" in notes:
                 self.assertIn(words, notes)
@@ -136,7 +136,7 @@ class Start(Epia):
         heights = np.load(shared(self, "terrain344x403.npy"))
         np.save(self.folder / "t.npy", heights)
         _, report = self.fit("t.npy", "--heights", "--stop-deviation", 20, "--max-iterations", 0)
-        self.assertLess(np.prod(report["control_shape"]), 0.05 * heights.size)
+        self.assertLess(np.prod(report["control_shape"]), 0.13 * heights.size)
 
 
 class Interpolated(Epia):

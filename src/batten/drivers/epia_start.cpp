@@ -22,11 +22,13 @@ double rounding_of(const Points& points) {
     return 4 * std::numeric_limits<double>::epsilon() * largest;
 }
 
-/// Curvature along an axis: of the sequence, or total curvatures averaged over the other axis of a
-/// grid [eq. 32 and 33].
-std::vector<double> axis_curvature(const Samples& samples, std::size_t axis, Index smoothing,
-                                   double error) {
-    if (samples.grid.empty()) return discrete_curvature(samples.points, smoothing, error);
+/// Curvatures along the axes: of the sequence, or total curvatures averaged over the other axis of
+/// a grid [eq. 30, 32 and 33].
+std::vector<std::vector<double>> axis_curvatures(const Samples& samples,
+                                                 const EpiaSettings& settings) {
+    const double error = settings.screen ? rounding_of(samples.points) : 0;
+    if (samples.grid.empty())
+        return {discrete_curvature(samples.points, settings.smoothing, error)};
     const GridIndex grid(samples.grid);
     std::vector<double> total(static_cast<std::size_t>(grid.size()));
     for (std::size_t along : {std::size_t{1}, std::size_t{0}})
@@ -34,18 +36,22 @@ std::vector<double> axis_curvature(const Samples& samples, std::size_t axis, Ind
             PointSet line(strand.count, samples.dim());
             for (Index j = 0; j < strand.count; ++j)
                 std::ranges::copy(samples.points[strand[j]], line[j].begin());
-            const std::vector<double> k = discrete_curvature(line, smoothing, error);
+            const std::vector<double> k = discrete_curvature(line, settings.smoothing, error);
             for (Index j = 0; j < strand.count; ++j) {
                 const double bend = k[static_cast<std::size_t>(j)];
                 total[static_cast<std::size_t>(strand[j])] += bend * bend;
             }
         });
-    std::vector<double> mean(static_cast<std::size_t>(grid.length(axis)));
-    const auto others = static_cast<double>(grid.length(1 - axis));
-    grid.for_each([&](const GridIndex::Place& place, Index at) {
-        mean[static_cast<std::size_t>(place[axis])] += total[static_cast<std::size_t>(at)] / others;
-    });
-    return mean;
+    std::vector<std::vector<double>> means;
+    for (std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+        means.emplace_back(static_cast<std::size_t>(grid.length(axis)));
+        const auto others = static_cast<double>(grid.length(1 - axis));
+        grid.for_each([&](const GridIndex::Place& place, Index at) {
+            means[axis][static_cast<std::size_t>(place[axis])] +=
+                total[static_cast<std::size_t>(at)] / others;
+        });
+    }
+    return means;
 }
 
 /// The dominant samples of an axis [eq. 31, 34 and 35], at most so many: those that stand out most.
@@ -84,19 +90,28 @@ std::vector<Index> stated_shape(const Problem& problem) {
     return {problem.options.method.control.size()};
 }
 
-std::vector<EpiaAxis> dominant_axes(const Problem& problem, const EpiaSettings& settings) {
+std::vector<EpiaAxis> dominant_axes(const Problem& problem,
+                                    const std::vector<std::vector<double>>& curvatures,
+                                    bool screen) {
     const std::vector<Index> stated = stated_shape(problem);
     const bool given = problem.options.method.initial == Initial::given;
-    const double error = settings.screen ? rounding_of(problem.samples.points) : 0;
     std::vector<EpiaAxis> axes;
     for (std::size_t k = 0; k < problem.axes.count(); ++k) {
-        EpiaAxis::Line line{problem.parameters.axes[k],
-                            axis_curvature(problem.samples, k, settings.smoothing, error)};
-        if (settings.screen) line.noise = span_of_noise(line.curvature);
-        const Index most = stated.empty() ? std::numeric_limits<Index>::max() : stated[k];
-        std::vector<Index> own = dominant(line, most, settings.screen || given);
-        axes.emplace_back(problem.axes.degree[k], std::move(line), std::move(own),
-                          alone_along(problem, k), given ? stated[k] : 0);
+        EpiaAxis::Line line{problem.parameters.axes[k], curvatures[k]};
+        if (screen) line.noise = span_of_noise(line.curvature);
+        Index most = stated.empty() ? problem.samples.size() : stated[k];
+        const std::vector<Index> alone = alone_along(problem, k);
+        const auto with = [&](Index so_many) {
+            return EpiaAxis(problem.axes.degree[k], line, dominant(line, so_many, screen || given),
+                            alone, given ? stated[k] : 0);
+        };
+        EpiaAxis axis = with(most);
+        while ((screen || given) && !stated.empty() && axis.control_count() > stated[k] &&
+               most > 2) { // room for those to be interpolated
+            most = std::max<Index>(2, most - (axis.control_count() - stated[k]));
+            axis = with(most);
+        }
+        axes.push_back(std::move(axis));
         if (given && axes[k].control_count() != stated[k])
             throw InvalidInput(fmt::format("epia: axis {}: {} control points given to start from, "
                                            "the samples to interpolate need {}",
@@ -133,59 +148,55 @@ Invalid invalid_of(const std::vector<EpiaAxis>& axes, const Problem& problem, do
     return result;
 }
 
-/// Whether more than half of an axis's samples are control points' own.
-bool near_interpolation(const std::vector<EpiaAxis>& axes) {
-    return std::ranges::any_of(
-        axes, [](const EpiaAxis& axis) { return 2 * axis.control_count() > axis.sample_count(); });
-}
-
-/// One round of the validation check, in which the fences of `invalid` groups become own samples;
-/// false where a stated number of control points forbids it.
-bool split(EpiaStart& start, const Invalid& invalid, const Problem& problem, bool screen) {
-    const std::vector<EpiaAxis> before = start.axes;
-    for (std::size_t k = 0; k < start.axes.size(); ++k) start.axes[k].insert(invalid.fences[k]);
+/// Why the validation check may not make these control points of those before; nothing where it
+/// may.
+std::string forbidden(const std::vector<EpiaAxis>& now, const std::vector<EpiaAxis>& before,
+                      const Problem& problem, double noise) {
     const std::vector<Index>& most = problem.axes.control_points;
-    for (std::size_t k = 0; k < most.size() && screen; ++k)
-        if (start.axes[k].control_count() > std::max(most[k], before[k].control_count())) {
-            start.axes = before;
-            start.notes.push_back(fmt::format("{} groups fail the validation check (47), which the "
-                                              "stated number of control points forbids to split",
-                                              invalid.groups));
-            return false;
-        }
-    ++start.rounds;
-    return true;
+    Index controls = 1;
+    for (std::size_t k = 0; k < now.size(); ++k) {
+        const Index count = now[k].control_count();
+        controls *= count;
+        if (!most.empty() && count > std::max(most[k], before[k].control_count()))
+            return "than are stated";
+    }
+    constexpr Index sparse = 8; // the paper's patch: 31 x 66 of 121 x 161, a tenth
+    if (now.size() == 1 || sparse * controls <= problem.samples.size()) return {};
+    return fmt::format("than an eighth of the samples, which {}",
+                       noise > 0 ? fmt::format("are noisy by {:.3g}", noise)
+                                 : "have detail, not noise, between any two");
 }
 
 } // namespace
 
 EpiaStart epia_start(const Problem& problem, const EpiaSettings& settings) {
-    EpiaStart start{dominant_axes(problem, settings)};
+    const std::vector<std::vector<double>> curvatures = axis_curvatures(problem.samples, settings);
+    EpiaStart start{dominant_axes(problem, curvatures, settings.screen)};
     if (problem.options.method.initial == Initial::given) return start; // of their number
-    const std::vector<EpiaAxis> before = start.axes;
     const double noise = white_noise(problem.samples.points, problem.samples.shape());
     const double chance =
         settings.screen ? std::max(3 * noise, rounding_of(problem.samples.points)) : 0;
     while (settings.rounds > 0) {
         const Invalid invalid = invalid_of(start.axes, problem, settings.eta, chance);
         if (invalid.groups == 0) break;
+        const auto end = [&](const std::string& why) {
+            start.notes.push_back(
+                fmt::format("{} groups fail the validation check (47){}", invalid.groups, why));
+        };
         if (start.rounds == settings.rounds) {
-            start.notes.push_back(fmt::format("{} groups fail the validation check (47) after {} "
-                                              "rounds, the most allowed",
-                                              invalid.groups, start.rounds));
+            end(fmt::format(" after {} rounds, the most allowed", start.rounds));
             break;
         }
-        if (!split(start, invalid, problem, settings.screen)) break;
-        if (settings.screen && start.axes.size() > 1 && near_interpolation(start.axes)) {
-            start.axes = before;
-            start.rounds = 0;
-            start.notes.push_back(fmt::format(
-                "the validation check (47) would make most samples of an axis control points, for "
-                "{}: it is left out",
-                noise > 0 ? fmt::format("they are noisy, by {:.3g}", noise)
-                          : "there is detail, not noise, between any two"));
+        std::vector<EpiaAxis> split = start.axes;
+        for (std::size_t k = 0; k < split.size(); ++k) split[k].insert(invalid.fences[k]);
+        const std::string why =
+            settings.screen ? forbidden(split, start.axes, problem, noise) : std::string();
+        if (!why.empty()) {
+            end(", to split them would take more control points " + why);
             break;
         }
+        start.axes = std::move(split);
+        ++start.rounds;
     }
     return start;
 }
