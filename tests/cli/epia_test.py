@@ -121,13 +121,13 @@ class Start(Epia):
         u, v = np.meshgrid(np.arange(60.0), np.arange(70.0), indexing="ij")
         smooth = 30 * np.sin(u / 9) * np.cos(v / 11)
         noisy = smooth + np.random.default_rng(2).normal(size=u.shape)
-        for name, heights, words in (("hills", hills(60, 70), "have detail, not noise, between any two"), ("noise", noisy, "are noisy by")):
+        for name, heights, words in (("hills", hills(60, 70), "show detail, not noise"), ("noise", noisy, "are noisy by")):
             asked = ["--stop-deviation", 1, "--max-iterations", 0]
             grid = np.stack([u, v, heights], -1)
             _, report = self.fit(grid, *asked)
             _, every = self.fit(grid, *asked, "--set", "screen=0")
             self.assertGreater(np.prod(every["control_shape"]), 0.4 * u.size, name)
-            self.assertLess(np.prod(report["control_shape"]), 0.13 * u.size, name)
+            self.assertLess(np.prod(report["control_shape"]), 0.15 * u.size, name)
             notes = " ".join(report["notes"])
             if "(47)" in notes:
                 self.assertIn(words, notes)
@@ -205,7 +205,7 @@ class Precision(Epia):
             self.assertEqual(report["control_shape"], [n])
         before, start = self.fit(points, "-n", 13, "--interpolate", 21, "--max-iterations", 0)
         after, report = self.fit(points, "-n", 13, "--interpolate", 21, "--max-iterations", 60)
-        self.assertLessEqual(report["control_shape"][0], 13)
+        self.assertEqual((start["control_shape"], report["control_shape"]), ([13], [13]))
         self.assertGreater(start["constraint_error"], 13 * report["constraint_error"])  # Fig. 2: 0.1265 to 0.0097
 
     def test_own_control_points_to_start_from(self):

@@ -31,7 +31,9 @@ std::span<const Paper> papers() {
          "however sampled, are never 33.6 off, as the surface of figure 6 is at the start.",
          lin_wang_dong},
         {"epia", "Lin, Zhang 2011",
-         "The glyph and the scanned patch are not public: a letter G and peaks stand in.",
+         "The glyph and the scanned patch are not public: a letter G and peaks stand in, with "
+         "--data "
+         "glyph273.csv and a window of terrain344x403.npy.",
          lin_zhang},
         {"mlspia", "Huang, Wang 2020",
          "Example 3 is given by its formula; data of the same sizes stand in for the others. The "

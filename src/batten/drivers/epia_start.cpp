@@ -54,20 +54,19 @@ std::vector<std::vector<double>> axis_curvatures(const Samples& samples,
     return means;
 }
 
-/// The dominant samples of an axis [eq. 31, 34 and 35], at most so many: those that stand out most.
-std::vector<Index> dominant(const EpiaAxis::Line& line, Index most, bool screen) {
-    if (!screen) return dominant_indices(line.curvature);
-    std::vector<Index> own = dominant_indices(line.curvature, line.noise);
+/// The maxima that stand out by more than `rise`, at most so many: then those that do so most.
+std::vector<Index> most_dominant(const std::vector<double>& curvature, double rise, Index most) {
+    std::vector<Index> own = dominant_indices(curvature, rise);
     if (static_cast<Index>(own.size()) <= most) return own;
-    double low = line.noise;
-    double high = std::ranges::max(line.curvature);
-    own = dominant_indices(line.curvature, high);
+    double low = rise;
+    double high = std::ranges::max(curvature);
+    own = dominant_indices(curvature, high);
     for (int halving = 0; halving < 60; ++halving) {
-        const double rise = (low + high) / 2;
-        std::vector<Index> now = dominant_indices(line.curvature, rise);
+        const double middle = (low + high) / 2;
+        std::vector<Index> now = dominant_indices(curvature, middle);
         const bool few = static_cast<Index>(now.size()) <= most;
         if (few) own = std::move(now);
-        (few ? high : low) = rise;
+        (few ? high : low) = middle;
     }
     return own;
 }
@@ -90,34 +89,45 @@ std::vector<Index> stated_shape(const Problem& problem) {
     return {problem.options.method.control.size()};
 }
 
-std::vector<EpiaAxis> dominant_axes(const Problem& problem,
-                                    const std::vector<std::vector<double>>& curvatures,
-                                    bool screen) {
-    const std::vector<Index> stated = stated_shape(problem);
+/// What is said of the numbers of control points.
+struct Numbers {
+    std::vector<Index> stated;
+    bool exact;  ///< they are given to start from, or there is no precision to grow for
+    bool screen; ///< what noise makes is not dominant
+};
+
+Numbers numbers_of(const Problem& problem, bool screen) {
     const bool given = problem.options.method.initial == Initial::given;
-    std::vector<EpiaAxis> axes;
-    for (std::size_t k = 0; k < problem.axes.count(); ++k) {
-        EpiaAxis::Line line{problem.parameters.axes[k], curvatures[k]};
-        if (screen) line.noise = span_of_noise(line.curvature);
-        Index most = stated.empty() ? problem.samples.size() : stated[k];
-        const std::vector<Index> alone = alone_along(problem, k);
-        const auto with = [&](Index so_many) {
-            return EpiaAxis(problem.axes.degree[k], line, dominant(line, so_many, screen || given),
-                            alone, given ? stated[k] : 0);
-        };
-        EpiaAxis axis = with(most);
-        while ((screen || given) && !stated.empty() && axis.control_count() > stated[k] &&
-               most > 2) { // room for those to be interpolated
-            most = std::max<Index>(2, most - (axis.control_count() - stated[k]));
-            axis = with(most);
-        }
-        axes.push_back(std::move(axis));
-        if (given && axes[k].control_count() != stated[k])
-            throw InvalidInput(fmt::format("epia: axis {}: {} control points given to start from, "
-                                           "the samples to interpolate need {}",
-                                           k, stated[k], axes[k].control_count()));
+    const bool grows = problem.options.stop.deviation > 0 || !problem.tolerance.empty();
+    const std::vector<Index> stated = stated_shape(problem);
+    return {stated, given || (screen && !stated.empty() && !grows), screen};
+}
+
+/// An axis with its dominant samples as control points' own [eq. 31, 34 and 35].
+EpiaAxis dominant_axis(const Problem& problem, std::size_t k, EpiaAxis::Line line,
+                       const Numbers& numbers) {
+    if (numbers.screen) line.noise = span_of_noise(line.curvature);
+    const bool bounded = !numbers.stated.empty() && (numbers.screen || numbers.exact);
+    const Index stated = bounded ? numbers.stated[k] : static_cast<Index>(line.curvature.size());
+    const std::vector<Index> alone = alone_along(problem, k);
+    const double rise = numbers.exact ? 0 : line.noise;
+    const auto with = [&](Index most) {
+        return EpiaAxis(problem.axes.degree[k], line,
+                        numbers.screen || numbers.exact ? most_dominant(line.curvature, rise, most)
+                                                        : dominant_indices(line.curvature),
+                        alone, numbers.exact ? stated : 0);
+    };
+    Index most = stated;
+    EpiaAxis axis = with(most);
+    while (axis.control_count() > stated && most > 2) { // room for those to be interpolated
+        most = std::max<Index>(2, most - (axis.control_count() - stated));
+        axis = with(most);
     }
-    return axes;
+    if (problem.options.method.initial == Initial::given && axis.control_count() != stated)
+        throw InvalidInput(fmt::format("epia: axis {}: {} control points given to start from, the "
+                                       "samples to interpolate need {}",
+                                       k, stated, axis.control_count()));
+    return axis;
 }
 
 /// The samples at the fences of the groups whose residuals do not point one way [eq. 47], per axis;
@@ -148,57 +158,84 @@ Invalid invalid_of(const std::vector<EpiaAxis>& axes, const Problem& problem, do
     return result;
 }
 
-/// Why the validation check may not make these control points of those before; nothing where it
-/// may.
-std::string forbidden(const std::vector<EpiaAxis>& now, const std::vector<EpiaAxis>& before,
-                      const Problem& problem, double noise) {
-    const std::vector<Index>& most = problem.axes.control_points;
-    Index controls = 1;
-    for (std::size_t k = 0; k < now.size(); ++k) {
-        const Index count = now[k].control_count();
-        controls *= count;
-        if (!most.empty() && count > std::max(most[k], before[k].control_count()))
-            return "than are stated";
+/// Axes whose validation check goes on until it holds, or as far as it may.
+class Validation {
+  public:
+    Validation(const Problem& problem, const EpiaSettings& settings)
+        : problem_(problem),
+          settings_(settings),
+          noise_(white_noise(problem.samples.points, problem.samples.shape())) {}
+
+    EpiaStart of(std::vector<EpiaAxis> axes) const {
+        const double chance =
+            settings_.screen ? std::max(3 * noise_, rounding_of(problem_.samples.points)) : 0;
+        EpiaStart start{std::move(axes)};
+        while (settings_.rounds > 0) {
+            const Invalid invalid = invalid_of(start.axes, problem_, settings_.eta, chance);
+            if (invalid.groups == 0) break;
+            std::vector<EpiaAxis> split = start.axes;
+            for (std::size_t k = 0; k < split.size(); ++k) split[k].insert(invalid.fences[k]);
+            const std::string why = forbidden(split, start);
+            if (!why.empty()) {
+                start.notes.push_back(
+                    fmt::format("{} groups fail the validation check (47){}", invalid.groups, why));
+                break;
+            }
+            start.axes = std::move(split);
+            ++start.rounds;
+        }
+        return start;
     }
-    constexpr Index sparse = 8; // the paper's patch: 31 x 66 of 121 x 161, a tenth
-    if (now.size() == 1 || sparse * controls <= problem.samples.size()) return {};
-    return fmt::format("than an eighth of the samples, which {}",
-                       noise > 0 ? fmt::format("are noisy by {:.3g}", noise)
-                                 : "have detail, not noise, between any two");
-}
+
+    /// Whether a grid has as many control points as may be without insertions, for detail.
+    bool is_detailed(const EpiaStart& start) const {
+        return settings_.screen && !(noise_ > 0) && start.axes.size() > 1 && !start.notes.empty() &&
+               problem_.axes.control_points.empty();
+    }
+
+  private:
+    /// Why no more groups may be split, in words; nothing where they may.
+    std::string forbidden(const std::vector<EpiaAxis>& split, const EpiaStart& start) const {
+        if (start.rounds == settings_.rounds)
+            return fmt::format(" after {} rounds, the most allowed", start.rounds);
+        if (!settings_.screen) return {};
+        const std::vector<Index>& most = problem_.axes.control_points;
+        Index controls = 1;
+        for (std::size_t k = 0; k < split.size(); ++k) {
+            const Index count = split[k].control_count();
+            controls *= count;
+            if (!most.empty() && count > std::max(most[k], start.axes[k].control_count()))
+                return "; to split them would take more control points than are stated";
+        }
+        constexpr Index sparse = 8; // the paper's patch: 31 x 66 of 121 x 161, a tenth
+        if (split.size() == 1 || sparse * controls <= problem_.samples.size()) return {};
+        return fmt::format("; to split them would take more control points than an eighth of the "
+                           "samples, which {}",
+                           noise_ > 0 ? fmt::format("are noisy by {:.3g}", noise_)
+                                      : "show detail, not noise");
+    }
+
+    const Problem& problem_;
+    const EpiaSettings& settings_;
+    double noise_;
+};
 
 } // namespace
 
 EpiaStart epia_start(const Problem& problem, const EpiaSettings& settings) {
     const std::vector<std::vector<double>> curvatures = axis_curvatures(problem.samples, settings);
-    EpiaStart start{dominant_axes(problem, curvatures, settings.screen)};
-    if (problem.options.method.initial == Initial::given) return start; // of their number
-    const double noise = white_noise(problem.samples.points, problem.samples.shape());
-    const double chance =
-        settings.screen ? std::max(3 * noise, rounding_of(problem.samples.points)) : 0;
-    while (settings.rounds > 0) {
-        const Invalid invalid = invalid_of(start.axes, problem, settings.eta, chance);
-        if (invalid.groups == 0) break;
-        const auto end = [&](const std::string& why) {
-            start.notes.push_back(
-                fmt::format("{} groups fail the validation check (47){}", invalid.groups, why));
-        };
-        if (start.rounds == settings.rounds) {
-            end(fmt::format(" after {} rounds, the most allowed", start.rounds));
-            break;
-        }
-        std::vector<EpiaAxis> split = start.axes;
-        for (std::size_t k = 0; k < split.size(); ++k) split[k].insert(invalid.fences[k]);
-        const std::string why =
-            settings.screen ? forbidden(split, start.axes, problem, noise) : std::string();
-        if (!why.empty()) {
-            end(", to split them would take more control points " + why);
-            break;
-        }
-        start.axes = std::move(split);
-        ++start.rounds;
-    }
-    return start;
+    const auto dominant = [&](bool screen) {
+        const Numbers numbers = numbers_of(problem, screen);
+        std::vector<EpiaAxis> axes;
+        for (std::size_t k = 0; k < problem.axes.count(); ++k)
+            axes.push_back(
+                dominant_axis(problem, k, {problem.parameters.axes[k], curvatures[k]}, numbers));
+        return axes;
+    };
+    if (problem.options.method.initial == Initial::given) return {dominant(settings.screen)};
+    const Validation check(problem, settings);
+    EpiaStart start = check.of(dominant(settings.screen));
+    return check.is_detailed(start) ? check.of(dominant(false)) : start; // no maximum is noise
 }
 
 } // namespace batten

@@ -31,7 +31,9 @@ struct EpiaStart {
 /// With EpiaSettings::screen what noise makes is neither: maxima of the curvature that do not rise
 /// above its noise, bends that rounding makes, groups whose residuals are no larger than the
 /// samples' white noise; and the check takes no more control points than are stated, nor on a grid
-/// than an eighth of the samples. Without, every maximum and every group counts, as in the paper.
+/// than an eighth of the samples: where that is too few for detail every maximum is dominant. A
+/// stated number without a precision to reach is that of the start. Without, every maximum and
+/// every group counts, as in the paper.
 EpiaStart epia_start(const Problem& problem, const EpiaSettings& settings);
 
 } // namespace batten
