@@ -1,5 +1,6 @@
 """EPIA [LinZhang2011] beside its formulas in NumPy on dense matrices: where it starts, what moves, when knots come, how it ends."""
 import json
+import re
 import unittest
 
 import numpy as np
@@ -307,6 +308,27 @@ class Surfaces(Epia):
         for j in held:  # the nearest control point follows this sample alone
             own = 8 * np.abs(gu - uv[j, 0]).argmin() + np.abs(gv - uv[j, 1]).argmin()
             np.testing.assert_allclose(moved[own], residual[j], atol=1e-13)
+
+
+class Reproduced(Epia):
+    def test_the_papers_tables(self):
+        """The counts that Table 1 prints for 50 and 70 iterations; pictures of every step with its own control points."""
+        data = shared(self, "glyph273.csv").parent
+        done = self.run_batten("reproduce", "epia", "--data", data, "--folder", "f")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        table = done.stdout.split("Table 1 and Fig. 3, eta 0.6")[1]
+        count = lambda after: re.search(f"control points after {after} iterations +([0-9]+) +([0-9]+)", table).groups()
+        self.assertEqual([count(50), count(70)], [("59", "59"), ("66", "66")])
+        for step in (0, 15, 50, 70):
+            picture = (self.folder / "f" / f"epia_letter_0.6_step{step}.svg").read_text()
+            before = int(count(step)[1]) - picture.count("<circle")
+            self.assertIn(before, (0, 1), step)  # the picture is before a knot that comes then
+        fig_2 = done.stdout.split("Figure 2")[1]
+        self.assertEqual(re.search("control points +([0-9]+) +([0-9]+)", fig_2).groups(), ("13", "13"))
+        self.assertRegex(done.stdout, r"\[27\]: control points along u, start +20 +20 .*\n.*along v, start +31 +31 ")
+        for name in ("epia_start", "epia_100", "columns_start", "columns_100"):
+            self.assertIn("<svg", (self.folder / "f" / f"epia_fig6_{name}.svg").read_text())
+        self.assertEqual(self.run_batten("reproduce", "epia", "--folder", "g").returncode, 0)
 
 
 if __name__ == "__main__":
