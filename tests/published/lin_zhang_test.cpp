@@ -70,7 +70,8 @@ TEST(LinZhang, patch_of_peaks_improves_twentyfold_in_100_iterations) {
     const FitResult result = fit(peaks, options);
     EXPECT_LE(result.report.control_shape[0], 68);
     EXPECT_LE(result.report.control_shape[1], 90);
-    EXPECT_EQ(result.report.iterations, 100);
+    EXPECT_LE(result.report.iterations, 100);
+    EXPECT_EQ(result.report.termination, Termination::tolerance_met);
     const double last = largest_deviation(result, peaks);
     EXPECT_NEAR(result.report.history.back().max_deviation, last, 1e-12);
     EXPECT_GT(result.report.history.front().max_deviation,
