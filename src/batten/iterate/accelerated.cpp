@@ -28,6 +28,7 @@ Chebyshev::Chebyshev(const NormalSystem& system, double eigenvalue_tolerance, Ro
 void Chebyshev::start(PointSet&) {
     check_setting("chebyshev", "eigenvalue_tolerance", gradient_.tolerance());
     gradient_.start();
+    setup_products_ = gradient_.setup_products();
     const ExtremeEigenvalues e = widened(gradient_);
     centre_ = (e.largest + e.smallest) / 2;
     radius_ = (e.largest - e.smallest) / 2;
@@ -63,6 +64,7 @@ Nesterov::Nesterov(const NormalSystem& system, double eigenvalue_tolerance, std:
 void Nesterov::start(PointSet&) {
     check_setting(name_, "eigenvalue_tolerance", gradient_.tolerance());
     gradient_.start();
+    setup_products_ = gradient_.setup_products();
     const ExtremeEigenvalues e = widened(gradient_);
     step_ = 1 / e.largest;
     const double root = std::sqrt(e.largest / e.smallest);

@@ -16,6 +16,7 @@ void Alspia::start(PointSet&) {
     check_setting("alspia", "cycle", static_cast<double>(cycle_));
     check_setting("alspia", "eigenvalue_tolerance", gradient_.tolerance());
     gradient_.start();
+    setup_products_ = gradient_.setup_products();
     const WorkingEigenvalues& working = gradient_.eigenvalues();
     largest_ = working.values.largest;
     // the roots that vanish at 0 do without an eigenvalue that would have to be raised

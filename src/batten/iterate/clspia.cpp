@@ -40,6 +40,7 @@ void Clspia::start(PointSet& control) {
 
 void Clspia::choose_inner_step() {
     const ExtremeEigenvalues gamma = extreme_eigenvalues(system_, given_.eigenvalue_tolerance);
+    setup_products_ = gamma.products;
     gamma_max_ = (1 + given_.eigenvalue_tolerance) * gamma.largest;
     mu_1_ = given_.mu_1.value_or((gamma.smallest + gamma_max_) / 2);
     check_setting("clspia", "mu_1", mu_1_, {.low = gamma.largest / 2}, "its region of convergence");
@@ -54,6 +55,7 @@ void Clspia::choose_outer_step() {
                            "control point; use method direct");
     }
     schur_ = std::make_unique<SchurComplement>(*normal, constraints_, system_.size());
+    setup_products_ += constraints_.size(); // a solve each
     beta_max_ = schur_->eigenvalues().largest;
     if (given_.mu)
         check_setting("clspia", "mu", *given_.mu, {.low = 0, .high = 2 / beta_max_},

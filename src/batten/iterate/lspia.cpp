@@ -16,6 +16,7 @@ Lspia::Lspia(const NormalSystem& system, std::optional<double> mu, double eigenv
 void Lspia::start(PointSet&) {
     check_setting("lspia", "eigenvalue_tolerance", gradient_.tolerance());
     gradient_.start();
+    setup_products_ = gradient_.setup_products();
     const ExtremeEigenvalues& sigma2 = gradient_.eigenvalues().values;
     mu_ = given_mu_.value_or(gradient_.by_row_sums() ? 1 : 2 / (sigma2.largest + sigma2.smallest));
     // the largest eigenvalue is known from below only: near the edge leave the judgement to the

@@ -54,6 +54,12 @@ class Method {
     virtual std::string note() const { return {}; }
     /// Predicted factor by which the error falls per iteration, 0 when the theory gives none.
     virtual double predicted_rate() const { return 0; }
+    /// Products with A^T D A, or solves in its place, that the spectrum took at start(): each costs
+    /// about a step; 0 where no eigenvalues are needed.
+    Index setup_products() const { return setup_products_; }
+
+  protected:
+    Index setup_products_ = 0;
 };
 
 } // namespace batten

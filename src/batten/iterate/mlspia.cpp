@@ -23,12 +23,13 @@ double longest_step(double omega, double gamma) {
 } // namespace
 
 Mlspia::Mlspia(const NormalSystem& system, MlspiaWeights weights, double eigenvalue_tolerance,
-               std::optional<RowSums> row_sums)
+               std::optional<RowSums> row_sums, std::string_view name)
     : gradient_(
           system,
           row_sums.value_or(weights.stated() ? RowSums::never : RowSums::where_ill_determined),
           eigenvalue_tolerance),
-      given_(weights) {}
+      given_(weights),
+      name_(name) {}
 
 void Mlspia::choose_weights(const ExtremeEigenvalues& sigma2) {
     const double s1 = std::sqrt(sigma2.largest);
@@ -67,6 +68,7 @@ void Mlspia::start(PointSet& control) {
     gradient_.start();
     const WorkingEigenvalues& working = gradient_.eigenvalues();
     const ExtremeEigenvalues& sigma2 = working.values;
+    setup_products_ = gradient_.setup_products();
     choose_weights(sigma2);
     // Lemma 3: 1 - omega and the roots of eq. 16; their modulus is largest at one of the extreme
     // singular values

@@ -21,19 +21,20 @@ struct MlspiaWeights {
 
 /// Least-squares PIA with memory [HuangWang2020, eq. 1 to 3]:
 /// Delta^k = (1 - omega) Delta^{k-1} + gamma delta^k + (omega - gamma) delta^{k-1}, delta^k = nu
-/// A^T (Q - A P^k).
+/// A^T (Q - A P^k). With the best weights gamma = omega, and it is Polyak's method of the heavy
+/// ball [Polyak1964], known here as PmLSPIA too [LiuWuLiHu2024].
 class Mlspia : public Method {
   public:
     /// Stated weights multiply gradients as they are unless row sums are asked for.
     explicit Mlspia(const NormalSystem& system, MlspiaWeights weights = {},
                     double eigenvalue_tolerance = default_eigenvalue_tolerance,
-                    std::optional<RowSums> row_sums = {});
+                    std::optional<RowSums> row_sums = {}, std::string_view name = "mlspia");
 
     /// Makes Delta^0 = nu A^T Lambda^0 for any Lambda^0 of the caller's: `moves` (N x dim) is A^T
     /// Lambda^0.
     void set_first_moves(PointSet moves) { first_ = std::move(moves); }
 
-    std::string_view name() const override { return "mlspia"; }
+    std::string_view name() const override { return name_; }
     /// Throws InvalidInput when the weights are outside the convergence region [eq. 11].
     void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
@@ -56,6 +57,7 @@ class Mlspia : public Method {
     double omega_ = 0;
     double gamma_ = 0;
     double nu_ = 0;
+    std::string_view name_;
     double rate_ = 0;
     PointSet first_;
     PointSet last_;

@@ -8,12 +8,15 @@ namespace batten {
 
 void StepGradient::start() {
     over_sums_.clear();
+    products_ = 0;
     if (row_sums_ != RowSums::always) {
         working_ = working_eigenvalues(system_, tolerance_);
+        products_ = working_.values.products;
         if (row_sums_ == RowSums::never || !working_.ill_determined) return;
     }
     over_sums_ = diagonal_steps(system_);
     working_ = row_scaled_eigenvalues(system_, tolerance_);
+    products_ += working_.values.products;
     if (row_sums_ == RowSums::always) return;
     const std::string_view why = working_.note.empty() ? "ill-determined" : "";
     working_.note = fmt::format("{}{}; each control point's gradient counts over its row sum of "

@@ -30,6 +30,8 @@ class StepGradient {
     double norm() const { return norm_; }
     bool by_row_sums() const { return !over_sums_.empty(); }
     const WorkingEigenvalues& eigenvalues() const { return working_; }
+    /// With H, or solves, that the eigenvalues took.
+    Index setup_products() const { return products_; }
     double tolerance() const { return tolerance_; }
     const std::string& note() const { return working_.note; }
 
@@ -39,6 +41,7 @@ class StepGradient {
     double tolerance_;
     std::vector<double> over_sums_; ///< 1/s; empty: not taken
     WorkingEigenvalues working_;
+    Index products_ = 0;
     double norm_ = 0;
 };
 

@@ -16,7 +16,7 @@ namespace {
 
 using Vector = std::vector<double>;
 
-/// M times a fixed random vector, normalised: a start without components in the null space.
+/// M times a fixed random vector: a start without components in the null space.
 Vector start_vector(const VectorOperator& matrix, Index size) {
     std::mt19937_64 random(20041970);
     std::normal_distribution<double> normal;
@@ -24,11 +24,46 @@ Vector start_vector(const VectorOperator& matrix, Index size) {
     for (double& value : x) value = normal(random);
     Vector y(x.size());
     matrix(x, y);
-    const double length = norm(y);
-    if (length > 0)
-        for (double& value : y) value /= length;
     return y;
 }
+
+/// Orthonormal directions q of the product <., M^{-1} .> and their images M^{-1} q, which are the
+/// same where there is no preconditioner M.
+class Basis {
+  public:
+    explicit Basis(const VectorOperator& preconditioner) : preconditioner_(preconditioner) {}
+
+    const Vector& last_image() const { return (preconditioner_ ? images_ : directions_).back(); }
+    /// Takes from w what lies along the directions.
+    void make_orthogonal(Vector& w) const {
+        const std::vector<Vector>& images = preconditioner_ ? images_ : directions_;
+        for (int pass = 0; pass < 2; ++pass) // twice is enough for full orthogonality
+            for (std::size_t k = 0; k < directions_.size(); ++k)
+                batten::add_scaled(w.data(), -dot(images[k], w), directions_[k].data(),
+                                   static_cast<Index>(w.size()));
+    }
+    double length(const Vector& w) {
+        if (!preconditioner_) return norm(w);
+        image_.resize(w.size());
+        preconditioner_(w, image_);
+        return std::sqrt(std::max(0.0, dot(w, image_)));
+    }
+    /// Adds the w that length() was asked last for.
+    void add(Vector w, double length) {
+        if (length > 0)
+            for (double& value : w) value /= length;
+        if (preconditioner_ && length > 0)
+            for (double& value : image_) value /= length;
+        directions_.push_back(std::move(w));
+        if (preconditioner_) images_.push_back(image_);
+    }
+
+  private:
+    const VectorOperator& preconditioner_;
+    std::vector<Vector> directions_;
+    std::vector<Vector> images_;
+    Vector image_;
+};
 
 /// Ritz values and whether both extreme ones are within tolerance, by the residual |beta s_k|: its
 /// square over the gap to the neighbouring Ritz value bounds the error.
@@ -58,22 +93,20 @@ Ritz ritz(const Vector& alpha, const Vector& beta, double tolerance, SpectrumEnd
 } // namespace
 
 ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tolerance,
-                           SpectrumEnds ends) {
+                           SpectrumEnds ends, const VectorOperator& preconditioner) {
     constexpr Index most_steps = 600;
-    std::vector<Vector> basis{start_vector(matrix, size)};
+    Basis basis(preconditioner);
+    Vector w = start_vector(matrix, size);
+    basis.add(w, basis.length(w));
     Vector alpha;
     Vector beta;
-    Vector w(basis[0].size());
-    Ritz now{{0, 0}, false};
+    Ritz now{{}, false};
     Index next_look = 5;
     for (Index k = 0; k < std::min(size, most_steps); ++k) {
-        const Vector& q = basis.back();
-        matrix(q, w);
-        alpha.push_back(dot(q, w));
-        for (int pass = 0; pass < 2; ++pass) // twice is enough for full orthogonality
-            for (const Vector& other : basis)
-                add_scaled(w.data(), -dot(other, w), other.data(), size);
-        beta.push_back(norm(w));
+        matrix(basis.last_image(), w);
+        alpha.push_back(dot(basis.last_image(), w));
+        basis.make_orthogonal(w);
+        beta.push_back(basis.length(w));
         const bool exhausted = beta.back() <= 1e-13 * std::abs(alpha[0]) || k + 1 == size;
         if (exhausted) beta.back() = 0;
         if (exhausted || k + 1 >= next_look) {
@@ -81,9 +114,9 @@ ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tole
             next_look = k + 1 + std::max<Index>(5, k / 4); // a look costs O(k^3)
         }
         if (exhausted || now.settled) break;
-        basis.push_back(w);
-        for (double& value : basis.back()) value /= beta.back();
+        basis.add(w, beta.back());
     }
+    now.values.products = static_cast<Index>(alpha.size()) + 1; // that of the start, too
     return now.values;
 }
 
@@ -91,27 +124,30 @@ namespace {
 
 constexpr double rough = 1e-3;
 
-/// Roughly the largest eigenvalue of the inverse. Throws SolverError where there is none.
-double largest_of_inverse(const BandedMatrix& m) {
+/// Roughly the eigenvalues of the inverse, the largest settled. Throws SolverError where there is
+/// none.
+ExtremeEigenvalues of_inverse(const BandedMatrix& m) {
     const BandedCholesky factor(m);
     const VectorOperator inverse = [&](const Vector& in, Vector& out) {
         out = in;
         factor.solve(out.data(), {});
     };
-    return lanczos(inverse, m.size(), rough, SpectrumEnds::largest).largest;
+    return lanczos(inverse, m.size(), rough, SpectrumEnds::largest);
 }
 
 /// The eigenvalue beyond which `estimate` lies nothing, sharpened by Lanczos on the inverse of the
 /// matrix shifted past that end of the spectrum, the shift drawn closer: clustered ends separate.
-/// `sign` +1: the largest, -1: the smallest.
-double sharpened(const BandedMatrix& m, double estimate, int sign) {
+/// `sign` +1: the largest, -1: the smallest. Counts the solves.
+double sharpened(const BandedMatrix& m, double estimate, int sign, Index& solves) {
     for (double margin : {4 * rough, 1e-5, 1e-7, 1e-9}) {
         BandedMatrix shifted = m;
         const double shift = estimate * (1 + sign * margin);
         for (Index i = 0; i < m.size(); ++i)
             for (int k = 0; k <= m.bandwidth(); ++k)
                 shifted.at(i, k) = sign * ((k == 0 ? shift : 0.0) - m.at(i, k));
-        estimate = shift - sign / largest_of_inverse(shifted);
+        const ExtremeEigenvalues inverse = of_inverse(shifted);
+        estimate = shift - sign / inverse.largest;
+        solves += inverse.products;
     }
     return estimate;
 }
@@ -123,12 +159,16 @@ ExtremeEigenvalues banded_extremes(const BandedMatrix& m, double tolerance) {
     constexpr double loose = 1e-5;
     if (tolerance > loose) return lanczos(forward, m.size(), tolerance);
     ExtremeEigenvalues e = lanczos(forward, m.size(), rough);
-    e.largest = sharpened(m, e.largest, 1);
+    e.largest = sharpened(m, e.largest, 1, e.products);
     try {
-        e.smallest = sharpened(m, 1 / largest_of_inverse(m), -1);
+        const ExtremeEigenvalues inverse = of_inverse(m);
+        e.smallest = sharpened(m, 1 / inverse.largest, -1, e.products);
+        e.products += inverse.products;
     } catch (const SolverError&) { // singular: only the plain iteration, which starts in the range,
                                    // sees past the zeros
-        e.smallest = lanczos(forward, m.size(), tolerance).smallest;
+        const ExtremeEigenvalues seen = lanczos(forward, m.size(), tolerance);
+        e.smallest = seen.smallest;
+        e.products += seen.products;
     }
     return e;
 }
@@ -147,12 +187,13 @@ ExtremeEigenvalues extreme_eigenvalues(const NormalSystem& system, double tolera
         };
         return lanczos(whole, system.size(), tolerance);
     }
-    ExtremeEigenvalues product{1, 1};
+    ExtremeEigenvalues product{1, 1, 0};
     for (const BandedMatrix* gram : factors) {
         const ExtremeEigenvalues e =
             banded_extremes(*gram, tolerance / static_cast<double>(factors.size()));
         product.largest *= e.largest;
         product.smallest *= e.smallest;
+        product.products += e.products;
     }
     return product;
 }

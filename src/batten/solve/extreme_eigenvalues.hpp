@@ -11,6 +11,7 @@ namespace batten {
 struct ExtremeEigenvalues {
     double largest = 0;
     double smallest = 0;
+    Index products = 0; ///< with the matrix, or solves, that they took; with any axis's counts one
 };
 
 /// y = M x for vectors of the matrix's size.
@@ -21,9 +22,11 @@ enum class SpectrumEnds { both, largest };
 
 /// Extreme eigenvalues to a relative error of about `tolerance` by the Lanczos method with full
 /// reorthogonalisation, from a fixed start in the matrix's range (so zero eigenvalues are not
-/// seen).
+/// seen). With `preconditioner`, y = M^{-1} x of a symmetric positive definite M, those of M^{-1}
+/// times the matrix.
 ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tolerance,
-                           SpectrumEnds ends = SpectrumEnds::both);
+                           SpectrumEnds ends = SpectrumEnds::both,
+                           const VectorOperator& preconditioner = {});
 
 /// Those of A^T D A: of each banded factor, multiplied, where the system has factors.
 ExtremeEigenvalues extreme_eigenvalues(const NormalSystem& system, double tolerance = 1e-2);
