@@ -15,6 +15,7 @@ void add_compare(CLI::App& app);
 void add_info(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_plot(CLI::App& app);
+void add_fair(CLI::App& app);
 void add_generate(CLI::App& app);
 void add_methods(CLI::App& app);
 void add_reproduce(CLI::App& app);

@@ -16,29 +16,6 @@ namespace batten::command {
 
 namespace {
 
-/// `0,20,40`, or the whole numbers of a file.
-std::vector<Index> index_list(std::string_view option, const std::string& text) {
-    std::vector<double> numbers;
-    if (text.find_first_not_of("0123456789,") != std::string::npos) {
-        if (extension(text).empty())
-            throw InvalidInput(
-                fmt::format("{} {}: a list like 0,20,40 or a file is needed", option, text));
-        numbers = read_table(text).values();
-    } else
-        for (std::size_t at = 0; at <= text.size();) {
-            const std::size_t end = std::min(text.find(',', at), text.size());
-            numbers.push_back(parse_number(option, text.substr(at, end - at)));
-            at = end + 1;
-        }
-    std::vector<Index> result;
-    for (double x : numbers) {
-        if (x != std::floor(x) || x < 0)
-            throw InvalidInput(fmt::format("{}: {} is not an index", option, x));
-        result.push_back(static_cast<Index>(x));
-    }
-    return result;
-}
-
 /// Axes of the fit: a cloud's are those of its parameters, or of the plane that gives it some.
 Index axis_count(const Samples& samples, const ShapeOptions& shape) {
     if (shape.parameters && shape.parameters->is_scattered()) return shape.parameters->axis_count();

@@ -26,6 +26,7 @@ constexpr const char* next_steps =
 
 void add_commands(CLI::App& app) {
     command::add_fit(app);
+    command::add_fair(app);
     command::add_evaluate(app);
     command::add_compare(app);
     command::add_info(app);

@@ -1,6 +1,8 @@
 #include "parse.hpp"
 
 #include <batten/core/names.hpp>
+#include <batten/io/output_file.hpp>
+#include <batten/io/points_file.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -66,6 +68,28 @@ double parse_number(std::string_view option, std::string_view text) {
     if (!parsed(text, value) || !std::isfinite(value))
         throw InvalidInput(fmt::format("{} {}: a finite number is needed", option, text));
     return value;
+}
+
+std::vector<Index> index_list(std::string_view option, const std::string& text) {
+    std::vector<double> numbers;
+    if (text.find_first_not_of("0123456789,") != std::string::npos) {
+        if (extension(text).empty())
+            throw InvalidInput(
+                fmt::format("{} {}: a list like 0,20,40 or a file is needed", option, text));
+        numbers = read_table(text).values();
+    } else
+        for (std::size_t at = 0; at <= text.size();) {
+            const std::size_t end = std::min(text.find(',', at), text.size());
+            numbers.push_back(parse_number(option, text.substr(at, end - at)));
+            at = end + 1;
+        }
+    std::vector<Index> result;
+    for (double x : numbers) {
+        if (x != std::floor(x) || x < 0)
+            throw InvalidInput(fmt::format("{}: {} is not an index", option, x));
+        result.push_back(static_cast<Index>(x));
+    }
+    return result;
 }
 
 CLI::Validator positive() {

@@ -19,6 +19,7 @@
 #include <batten/solve/extreme_eigenvalues.hpp>
 #include <batten/iterate/iterate.hpp>
 #include <batten/iterate/methods.hpp>
+#include <batten/fair/fair.hpp>
 #include <batten/drivers/table.hpp>
 #include <batten/fit/fit.hpp>
 #include <batten/report/html.hpp>

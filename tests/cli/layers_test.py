@@ -8,7 +8,7 @@ ROOT = pathlib.Path(os.environ["BATTEN_ROOT"])
 STAGES = ROOT / "src" / "batten"
 # the floors of docs/architecture.md, from the bottom
 FLOOR = {"core": 0, "samples": 1, "shape": 1, "parametrize": 2, "basis": 2, "spline": 3, "system": 4, "measure": 5,
-         "io": 5, "solve": 6, "iterate": 7, "problem": 8, "search": 9, "robust": 9, "drivers": 10, "fit": 11, "report": 12}
+         "io": 5, "solve": 6, "iterate": 7, "fair": 8, "problem": 8, "search": 9, "robust": 9, "drivers": 10, "fit": 11, "report": 12}
 
 
 class Layers(unittest.TestCase):

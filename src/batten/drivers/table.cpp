@@ -31,6 +31,19 @@ Driver iteration(std::string_view name, Requests more = {}) {
     return {method_entry(name), all | curves, all, all - rules, fit_least_squares};
 }
 
+/// What has its own roughness takes no other.
+Driver without(Driver driver, Requests requests) {
+    for (std::optional<Requests>* column : {&driver.sequence, &driver.grid, &driver.cloud})
+        if (*column) *column = **column - requests;
+    return driver;
+}
+
+/// Its limit is what it is for open curves and the samples alone.
+Driver monotone(Driver driver) {
+    driver.grid = driver.cloud = std::nullopt;
+    return without(std::move(driver), Requests{smoothing, closed, seam, shape});
+}
+
 std::vector<Driver> table() {
     const Requests boundary{boundaries};
     // a solution depends on no start, is beyond every stop, and its course is one step
@@ -57,6 +70,12 @@ std::vector<Driver> table() {
         iteration("alspia"),
         iteration("nmlspia", remembering),
         iteration("lin2018"),
+        iteration("plspia"),
+        iteration("anderson"),
+        iteration("pmlspia"),
+        iteration("rpia"),
+        without(iteration("fairing-pia"), Requests{smoothing}),
+        monotone(iteration("monotone-lspia")),
         {method_entry("search"), searched | held | curves | Requests{corners},
          searched | held | boundary, (searched | held) - rules, fit_by_search},
     };

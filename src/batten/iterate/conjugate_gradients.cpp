@@ -6,11 +6,7 @@ ConjugateGradients::ConjugateGradients(const NormalSystem& system, Preconditione
     : system_(system), preconditioner_(preconditioner) {}
 
 void ConjugateGradients::start(PointSet&) {
-    if (preconditioner_ != Preconditioner::none) {
-        inverse_diagonal_ = system_.diagonal();
-        for (double& x : inverse_diagonal_) x = x > 0 ? 1 / x : 0;
-    }
-    if (preconditioner_ == Preconditioner::axes) axes_ = factorize_axes(system_);
+    preconditioning_ = Preconditioning(system_, preconditioner_);
     image_ = PointSet(system_.size(), system_.dim());
     fresh_ = true;
 }
@@ -19,7 +15,7 @@ const PointSet& ConjugateGradients::propose(const PointSet& control) {
     if (fresh_) gradient_ = system_.gradient(control);
     norm_ = frobenius_norm(gradient_);
     PointSet scaled = gradient_;
-    precondition(scaled);
+    preconditioning_.apply(scaled);
     const double energy = inner_product(gradient_, scaled);
     if (!fresh_) add_scaled(scaled, energy / energy_, direction_);
     direction_ = std::move(scaled);
@@ -31,21 +27,6 @@ const PointSet& ConjugateGradients::propose(const PointSet& control) {
     for (double& x : moves_.values()) x *= step_;
     fresh_ = false;
     return moves_;
-}
-
-void ConjugateGradients::precondition(PointSet& x) const {
-    const auto on_rows = [&](auto factor) {
-        for (Index i = 0; i < x.size(); ++i) {
-            const double f = factor(inverse_diagonal_[static_cast<std::size_t>(i)]);
-            for (double& value : x[i]) value *= f;
-        }
-    };
-    if (axes_) {
-        x = axes_->solve(std::move(x));
-        on_rows([](double d) { return d > 0 ? 1.0 : 0.0; }); // control points without samples stay
-    } else if (!inverse_diagonal_.empty()) {
-        on_rows([](double d) { return d; });
-    }
 }
 
 void ConjugateGradients::accept(const PointSet& moves) {

@@ -1,19 +1,9 @@
 #pragma once
 
 #include <batten/iterate/method.hpp>
-#include <batten/solve/factorization.hpp>
-#include <batten/system/normal_system.hpp>
+#include <batten/iterate/preconditioner.hpp>
 
 namespace batten {
-
-enum class Preconditioner {
-    none,
-    diagonal,
-    /// The Kronecker product of the axes' own matrices, for scattered samples: near the inverse
-    /// where they are spread evenly. Falls back to the diagonal where an axis alone is singular, or
-    /// for systems that are solved axis by axis anyway.
-    axes,
-};
 
 /// Conjugate gradients on the normal equations [HestenesStiefel1952], the baseline of all
 /// iterations here. Control points without samples stay where they start.
@@ -29,12 +19,9 @@ class ConjugateGradients : public Method {
     double gradient_norm() const override { return norm_; }
 
   private:
-    void precondition(PointSet& x) const;
-
     const NormalSystem& system_;
     Preconditioner preconditioner_;
-    std::unique_ptr<Factorization> axes_;
-    std::vector<double> inverse_diagonal_;
+    Preconditioning preconditioning_;
     PointSet gradient_;  // r
     PointSet direction_; // d
     PointSet image_;     // A^T D A d

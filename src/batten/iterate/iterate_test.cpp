@@ -49,7 +49,8 @@ TEST(Iterate, every_method_reaches_the_dense_solution) {
     EXPECT_LT(rose.error(solve_direct(*rose.system)), 1e-12);
     int seen = 0;
     for (const MethodEntry& entry : methods()) {
-        constexpr std::array others{"auto", "direct", "search", "pia", "epia", "clspia"};
+        constexpr std::array others{"auto", "direct", "search",      "pia",
+                                    "epia", "clspia", "fairing-pia", "monotone-lspia"};
         if (std::ranges::count(others, entry.name) > 0) continue;
         ++seen;
         PointSet control = random_points(rose.system->size(), 2, 1);

@@ -3,10 +3,16 @@
 #include <batten/core/names.hpp>
 #include <batten/iterate/accelerated.hpp>
 #include <batten/iterate/alspia.hpp>
+#include <batten/iterate/anderson.hpp>
 #include <batten/iterate/conjugate_gradients.hpp>
+#include <batten/iterate/fairing_pia.hpp>
 #include <batten/iterate/lin2018.hpp>
 #include <batten/iterate/lspia.hpp>
+#include <batten/iterate/method_settings.hpp>
 #include <batten/iterate/mlspia.hpp>
+#include <batten/iterate/monotone_lspia.hpp>
+#include <batten/iterate/plspia.hpp>
+#include <batten/iterate/rpia.hpp>
 #include <batten/iterate/salspia.hpp>
 #include <batten/shape/limits.hpp>
 
@@ -17,18 +23,7 @@ namespace batten {
 
 namespace {
 
-constexpr auto open = RangeEnd::open;
-constexpr auto closed = RangeEnd::closed;
-constexpr double largest_count = 1e6;
-constexpr SettingRange any_number{};
-constexpr SettingRange positive{.low = 0};
-constexpr SettingRange switched{0, 1, closed, closed, Numbers::whole};
-constexpr SettingRange counts{0, largest_count, closed, closed, Numbers::whole};
-constexpr SettingRange counts_from_one{1, largest_count, closed, closed, Numbers::whole};
-
-constexpr MethodSetting eigenvalue_setting{
-    "eigenvalue_tolerance", "relative accuracy of the extreme eigenvalues of A^T A",
-    default_eigenvalue_tolerance, SettingRange{0, 1, open, open}};
+using namespace method_settings;
 
 /// Whether gradients are taken over row sums, by every method that chooses steps by eigenvalues.
 constexpr MethodSetting row_sum_setting{
@@ -154,6 +149,18 @@ constexpr MethodEntry table[]{
      "LSPIA for singular systems: a step of each control point's own",
      "Lin, Cao, Zhang 2018",
      {}},
+    {"plspia", "LSPIA preconditioned by compensated bands, of clouds by the axes' product",
+     "Liu, Liu 2020", plspia_settings},
+    {"anderson", "LSPIA with each control point's own step, the last moves combined",
+     "Walker, Ni 2011", anderson_settings},
+    {"pmlspia", "LSPIA with Polyak's momentum", "Polyak 1964; Liu, Wu, Li, Hu 2024",
+     eigenvalues_only},
+    {"rpia", "LSPIA of a block of control points at a time, drawn at random", "Wu, Liu 2022",
+     rpia_settings},
+    {"fairing-pia", "lin2018 with roughness, both by one weight", "Jiang, Lin 2022",
+     fairing_settings},
+    {"monotone-lspia", "LSPIA projected onto monotone control points", "Li, Che 2026",
+     monotone_settings},
 };
 
 bool iterates(const MethodEntry& entry) {
@@ -182,6 +189,30 @@ Preconditioner preconditioner(const MethodEntry& entry, const Settings& settings
     return plain      ? Preconditioner::none
            : diagonal ? Preconditioner::diagonal
                       : Preconditioner::axes;
+}
+
+/// make_method for those at the end of the table; null for all others.
+std::unique_ptr<Method> make_newer_method(const MethodEntry& entry, const NormalSystem& system,
+                                          const Settings& settings) {
+    const auto given = [&](const char* of) { return setting(settings, of); };
+    const auto number = [&](const char* of) { return setting(entry, settings, of); };
+    const auto whole = [&](const char* of) { return static_cast<int>(number(of)); };
+    if (entry.name == "plspia")
+        return std::make_unique<Plspia>(system, whole("band"), given("relaxation"),
+                                        number("eigenvalue_tolerance"));
+    if (entry.name == "anderson") return std::make_unique<Anderson>(system, whole("window"));
+    if (entry.name == "pmlspia")
+        return std::make_unique<Mlspia>(system, MlspiaWeights{}, number("eigenvalue_tolerance"),
+                                        "pmlspia");
+    if (entry.name == "rpia")
+        return std::make_unique<Rpia>(system, static_cast<Index>(given("block").value_or(0)),
+                                      static_cast<std::uint64_t>(number("seed")));
+    if (entry.name == "fairing-pia")
+        return std::make_unique<FairingPia>(system, number("weight"), whole("order"));
+    if (entry.name != "monotone-lspia") return nullptr;
+    MonotoneLspia::Choice choice{.mu = given("mu"), .direction = whole("direction")};
+    if (const auto one = given("coordinate")) choice.coordinate = static_cast<Index>(*one);
+    return std::make_unique<MonotoneLspia>(system, choice);
 }
 
 } // namespace
@@ -259,6 +290,7 @@ std::unique_ptr<Method> make_method(std::string_view name, const NormalSystem& s
         return std::make_unique<Alspia>(system, static_cast<Index>(number("cycle")), accuracy(),
                                         by_need);
     if (name == "lin2018") return std::make_unique<Lin2018>(system);
+    if (auto method = make_newer_method(entry, system, settings)) return method;
     throw InvalidInput(fmt::format("method {} is no iteration on the normal equations", name));
 }
 

@@ -38,10 +38,15 @@ std::unique_ptr<Factorization> factorize(const NormalSystem& system) {
 std::unique_ptr<Factorization> factorize_axes(const NormalSystem& system) {
     const std::vector<BandedMatrix> nearby = system.nearby_factors();
     if (nearby.empty()) return nullptr;
+    return factorize(nearby, system.controls());
+}
+
+std::unique_ptr<Factorization> factorize(const std::vector<BandedMatrix>& bands,
+                                         const GridIndex& controls) {
     std::vector<const BandedMatrix*> factors;
-    for (const BandedMatrix& factor : nearby) factors.push_back(&factor);
+    for (const BandedMatrix& band : bands) factors.push_back(&band);
     try {
-        return std::make_unique<AxisFactorization>(factors, system.controls());
+        return std::make_unique<AxisFactorization>(factors, controls);
     } catch (const SolverError&) {
         return nullptr;
     }

@@ -25,4 +25,8 @@ std::unique_ptr<Factorization> factorize(const NormalSystem& system);
 /// where it has none, or when one of them is singular.
 std::unique_ptr<Factorization> factorize_axes(const NormalSystem& system);
 
+/// That of banded matrices, one per axis of the net `controls`; null when one of them is singular.
+std::unique_ptr<Factorization> factorize(const std::vector<BandedMatrix>& bands,
+                                         const GridIndex& controls);
+
 } // namespace batten

@@ -29,6 +29,13 @@ class StencilSystem : public NormalSystem {
     std::vector<BandedMatrix> nearby_factors() const override;
     bool of_grid() const override { return !grid_means_.empty(); }
     void add_roughness(double lambda, int order) override;
+    /// Adds the thin-plate roughness, the integral over the axes' unit intervals of the squared
+    /// derivatives of total order `order`, mixed ones as often as they have orders: of two axes and
+    /// order 2 |S_uu|^2 + 2 |S_uv|^2 + |S_vv|^2.
+    void add_thin_plate(int order);
+    /// Adds to the diagonal, one number per control point; those marked (not 0) in `held` are
+    /// decoupled from all others, with 1 on the diagonal.
+    void add_diagonal(const std::vector<double>& values, const std::vector<char>& held);
 
   private:
     struct CellSums;
@@ -43,6 +50,10 @@ class StencilSystem : public NormalSystem {
     void add_sample(std::span<const double> point, const double* parameter, double weight);
     void add_cells(const Points& points, const Points& parameters, std::span<const double> weights);
     void add_product(double factor, const std::vector<BandedMatrix>& matrices);
+    Index coupled(Index control, Index place) const {
+        return any_closed_ ? neighbour(control, place)
+                           : control + flat_offsets_[static_cast<std::size_t>(place)];
+    }
     void merge(const CellSums& sums);
     void apply_plane(const double* x, double* y) const;
 
@@ -65,8 +76,7 @@ void StencilSystem::visit_entries(Visit visit) const {
         for (Index i = 0; i < size(); ++i) {
             const double value = stencil_[static_cast<std::size_t>(place * size() + i)];
             if (value == 0) continue;
-            const Index j = any_closed_ ? neighbour(i, place)
-                                        : i + flat_offsets_[static_cast<std::size_t>(place)];
+            const Index j = coupled(i, place);
             visit(i, j, value);
             if (place >= same_slice_) visit(j, i, value);
         }
