@@ -183,6 +183,14 @@ class Fairing(InFolder):
             self.assertIn(words, done.stderr)
             self.assertFalse((self.folder / "x.json").exists())
 
+    def test_weights_that_hold_nothing(self):
+        t = np.linspace(0, 2 * np.pi, 100)[:-1]
+        np.save(self.folder / "q.npy", np.column_stack([np.cos(t), np.sin(t)]))
+        self.assertEqual(self.run_batten("fit", "q.npy", "-n", 20, "--closed", "-q", "-o", "circle.json").returncode, 0)
+        done = self.run_batten("fair", "circle.json", "--weight", "0.999999999999999", "-o", "x.json")
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn("weights so near 1", done.stderr)
+
     def test_a_straight_curve_of_degree_one(self):
         (self.folder / "wavy.json").write_text(json.dumps({"format": "batten-spline", "version": 1, "degree": [1], "knots": [[0, 0, 0.5, 1, 1]], "control_shape": [3],
                                                            "control_points": [[0, 0], [5, 1], [1, 0]]}))

@@ -82,6 +82,16 @@ std::string method_of(const FairOptions& options, const FairingSystem& system) {
     return system.size() <= most ? "direct" : "cg";
 }
 
+PointSet solved(const FairingSystem& system) {
+    try {
+        return factorize(system)->solve(system.rhs());
+    } catch (const SolverError&) {
+        throw InvalidInput(
+            "fair: weights so near 1 hold nothing where it is; take smaller ones, or "
+            "let fewer control points move");
+    }
+}
+
 } // namespace
 
 FairResult fair(const Spline& spline, const FairOptions& options) {
@@ -102,7 +112,7 @@ FairResult fair(const Spline& spline, const FairOptions& options) {
     PointSet moves(system.size(), system.dim());
     if (report.method == "direct") {
         check_settings(method_entry("direct"), options.settings);
-        moves = factorize(system)->solve(system.rhs());
+        moves = solved(system);
     } else {
         const auto method = make_method(report.method, system, options.settings);
         report.course = iterate(*method, moves, options.stop);

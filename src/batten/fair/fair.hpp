@@ -51,8 +51,8 @@ struct FairResult {
 /// Moves control points so that the sum of (1 - w_i) / w_i times their squared moves plus the
 /// energy, the thin-plate roughness of the spline, is least: progressive-iterative fairing
 /// [LinHuangZhangLin2026]. Throws InvalidInput for a weight outside 0 <= w < 1, an order that is
-/// not 1 to 3 or above a degree, a control point that is not there or named twice, or a method that
-/// is no iteration on equations.
+/// not 1 to 3 or above a degree, a control point that is not there or named twice, weights so
+/// near 1 that nothing is held, or a method that is no iteration on equations.
 FairResult fair(const Spline& spline, const FairOptions& options);
 
 } // namespace batten
