@@ -27,6 +27,13 @@ ExtremeEigenvalues preconditioned_extremes(const NormalSystem& system,
     return lanczos(forward, system.size(), tolerance, SpectrumEnds::both, inverse);
 }
 
+/// Whether no control point is without samples or hardly reached by any.
+bool reaches_all(const NormalSystem& system) {
+    const std::vector<double> diagonal = system.diagonal();
+    const auto [least, most] = std::ranges::minmax(diagonal);
+    return !hardly_reached(least, most);
+}
+
 } // namespace
 
 Plspia::Plspia(const NormalSystem& system, int band, std::optional<double> relaxation,
@@ -37,22 +44,34 @@ Plspia::Plspia(const NormalSystem& system, int band, std::optional<double> relax
       eigenvalue_tolerance_(eigenvalue_tolerance) {}
 
 void Plspia::start(PointSet&) {
-    constexpr double ill_determined = 1e-6;
+    constexpr double ill_determined = 1e-6; // smallest beside largest eigenvalue
     check_setting("plspia", "band", band_);
     check_setting("plspia", "eigenvalue_tolerance", eigenvalue_tolerance_);
     const bool banded = !system_.factors().empty();
     preconditioning_ = banded ? Preconditioning::compensated_bands(system_, band_)
                               : Preconditioning(system_, Preconditioner::axes);
-    ExtremeEigenvalues e =
-        preconditioned_extremes(system_, preconditioning_, eigenvalue_tolerance_);
-    setup_products_ = e.products;
-    if (banded) e.largest = std::max(e.largest, 1.0); // never above it
-    // where directions are ill-determined the best step would leave the largest mode where it is
-    factor_ = given_factor_.value_or(
-        e.smallest > ill_determined * e.largest ? 2 / (e.largest + e.smallest) : 1 / e.largest);
+    ExtremeEigenvalues e{1, 0, 0}; // as no compensated matrix has a larger one
+    if (!reaches_all(system_)) {
+        note_ = "ill-determined: some control points are hardly reached by any sample";
+    } else {
+        e = preconditioned_extremes(system_, preconditioning_, eigenvalue_tolerance_);
+        setup_products_ = e.products;
+        if (banded) e.largest = std::max(e.largest, 1.0);
+        if (e.smallest <= ill_determined * e.largest)
+            note_ = "ill-determined: eigenvalues down to a millionth of the largest or less";
+    }
+    if (!note_.empty()) { // the best factor would leave the largest modes where they are
+        if (!banded) preconditioning_ = Preconditioning::row_sums(system_);
+        e = {1, 0, e.products};
+        note_ += banded ? "; steps are of factor 1" : "; steps are over row sums, of factor 1";
+    }
+    const double best = e.smallest > 0 ? 2 / (e.largest + e.smallest) : 1;
+    factor_ = given_factor_.value_or(best);
     check_setting("plspia", "relaxation", factor_, {.low = 0, .high = 2 / e.largest},
                   "its region of convergence");
-    rate_ = std::max(std::abs(1 - factor_ * e.smallest), std::abs(1 - factor_ * e.largest));
+    rate_ = e.smallest > 0
+                ? std::max(std::abs(1 - factor_ * e.smallest), std::abs(1 - factor_ * e.largest))
+                : 0;
 }
 
 const PointSet& Plspia::propose(const PointSet& control) {

@@ -10,7 +10,7 @@ namespace batten {
 /// Preconditioned LSPIA, P <- P + mu M^{-1} A^T D (Q - A P): of sequences and full grids M is made
 /// of the middle of every axis's band, diagonally compensated [LiuLiu2020] (there of PIA's
 /// collocation matrix); of clouds and weighted grids it is the Kronecker product of the axes' own
-/// matrices.
+/// matrices, or, where the samples leave directions ill-determined, the row sums.
 class Plspia : public Method {
   public:
     /// `band`: diagonals kept on either side of the middle, 0 or more: 0 is lin2018, the degree the
@@ -28,6 +28,7 @@ class Plspia : public Method {
     double gradient_norm() const override { return norm_; }
     Settings settings() const override;
     double predicted_rate() const override { return rate_; }
+    std::string note() const override { return note_; }
 
   private:
     const NormalSystem& system_;
@@ -37,6 +38,7 @@ class Plspia : public Method {
     Preconditioning preconditioning_; ///< M^{-1}
     double factor_ = 0;
     double rate_ = 0;
+    std::string note_;
     double norm_ = 0;
     PointSet moves_;
 };

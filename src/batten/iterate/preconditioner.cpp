@@ -58,6 +58,12 @@ Preconditioning Preconditioning::compensated_bands(const NormalSystem& system, i
     }
 }
 
+Preconditioning Preconditioning::row_sums(const NormalSystem& system) {
+    Preconditioning result;
+    result.inverse_diagonal_ = diagonal_steps(system);
+    return result;
+}
+
 void Preconditioning::apply(PointSet& x) const {
     const auto on_rows = [&](auto factor) {
         for (Index i = 0; i < x.size(); ++i) {

@@ -27,6 +27,9 @@ class Preconditioning {
     /// such an M singular it has fewer diagonals. For systems with factors.
     static Preconditioning compensated_bands(const NormalSystem& system, int diagonals);
 
+    /// M of the row sums' absolute values alone, as of no diagonals, for any system.
+    static Preconditioning row_sums(const NormalSystem& system);
+
     /// x = M^{-1} x for x (N x dim).
     void apply(PointSet& x) const;
     /// The diagonals of compensated_bands; -1 of any other.
