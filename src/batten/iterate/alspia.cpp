@@ -18,7 +18,7 @@ void Alspia::start(PointSet&) {
     gradient_.start();
     setup_products_ = gradient_.setup_products();
     const WorkingEigenvalues& working = gradient_.eigenvalues();
-    largest_ = working.values.largest;
+    largest_ = working.values.largest * (1 + gradient_.tolerance()); // known from below
     // the roots that vanish at 0 do without an eigenvalue that would have to be raised
     const bool open =
         gradient_.by_row_sums() ? working.raised() : working.found <= singular * largest_;

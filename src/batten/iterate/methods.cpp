@@ -203,7 +203,7 @@ std::unique_ptr<Method> make_newer_method(const MethodEntry& entry, const Normal
     if (entry.name == "anderson") return std::make_unique<Anderson>(system, whole("window"));
     if (entry.name == "pmlspia")
         return std::make_unique<Mlspia>(system, MlspiaWeights{}, number("eigenvalue_tolerance"),
-                                        "pmlspia");
+                                        stated_row_sums(settings), "pmlspia");
     if (entry.name == "rpia")
         return std::make_unique<Rpia>(system, static_cast<Index>(given("block").value_or(0)),
                                       static_cast<std::uint64_t>(number("seed")));

@@ -67,7 +67,9 @@ void Mlspia::start(PointSet& control) {
     check_setting("mlspia", "eigenvalue_tolerance", gradient_.tolerance());
     gradient_.start();
     const WorkingEigenvalues& working = gradient_.eigenvalues();
-    const ExtremeEigenvalues& sigma2 = working.values;
+    ExtremeEigenvalues sigma2 = working.values;
+    sigma2.largest *=
+        1 + gradient_.tolerance(); // it is known from below, and eq. 11 leaves no room
     setup_products_ = gradient_.setup_products();
     choose_weights(sigma2);
     // Lemma 3: 1 - omega and the roots of eq. 16; their modulus is largest at one of the extreme
