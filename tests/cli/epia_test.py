@@ -231,6 +231,22 @@ class Precision(Epia):
         means = np.add.reduceat(points - evaluate(after, t), begin) / np.diff(np.r_[begin, 90])[:, None]
         self.assertLess(np.abs(means[[3, 4, 9]]).max(), 1e-12)
         self.assertEqual(report["settings"]["insertions"], 0)
+        done = self.run_batten("fit", "points.csv", "-m", "epia", "-n", 9, "--moving", "9")
+        self.assertEqual((done.returncode, done.stderr), (2, "batten: moving: control point 9 is outside 0 to 8\n"))
+
+    def test_refusals(self):
+        points, first = wave(30), wave(30)[::3]
+        np.savetxt(self.folder / "p.txt", first, fmt="%.17g")
+        self.save(points)
+        for words, *asked in (("state where to stop: a stop deviation, a tolerance or a number of control points",),
+                              ("axis 0: 10 control points given to start from, the samples to interpolate need 13", "--initial", "p.txt", "--interpolate",
+                               "1,3,5,7,9,11"),):
+            done = self.run_batten("fit", "points.csv", "-m", "epia", *asked)
+            self.assertEqual((done.returncode, done.stderr), (2, f"batten: epia: {words}\n"))
+        np.save(self.folder / "g.npy", np.stack(np.meshgrid(np.arange(6.0), np.arange(7.0), [0.0], indexing="ij"), -1)[:, :, 0])
+        np.savetxt(self.folder / "q.txt", np.zeros((16, 3)))
+        done = self.run_batten("fit", "g.npy", "-m", "epia", "--initial", "q.txt")
+        self.assertEqual((done.returncode, done.stderr), (2, "batten: epia: control points to start from need their numbers along the axes\n"))
 
     def test_weights_weigh_the_mean_of_a_group(self):
         points, t = wave(120), chord(wave(120))

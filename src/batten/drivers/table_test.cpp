@@ -233,7 +233,7 @@ void add(Request request, Ask& ask) {
         options.stop.max_iterations = 1;
         return;
     case Request::local:
-        options.method.moving = {3, 4};
+        options.method.moving = {2, 3};
         return;
     case Request::history:
         options.keep_history = true;
@@ -317,7 +317,9 @@ bool shows(Request request, const Ask& ask, const FitResult& result) {
     case Request::samples:
         if (report.method == "epia" || report.termination == Termination::iteration_limit)
             return report.goals_met() ==
-                   (deviation_of(result, ask, marked) < 2e-9 && report.deviation.maximum <= 0.02);
+                   (deviation_of(result, ask, marked) < 2e-9 &&
+                    deviation_of(result, ask, also_hit) < 2e-9 &&
+                    (ask.options.stop.deviation == 0 || report.deviation.maximum <= 0.02));
         return !report.goals_met() || (deviation_of(result, ask, also_hit) < 1e-8 &&
                                        deviation_of(result, ask, marked) < 1e-8);
     case Request::tangents:
@@ -382,6 +384,7 @@ bool must_change(Request request, const Driver& driver) {
     case Request::knots:
         return driver.name != "pia";
     case Request::samples:
+    case Request::tolerance: // of a fixed size the iteration goes on where it went
         return driver.name != "epia";
     default:
         return true;

@@ -19,7 +19,7 @@ Pia::Pia(const DataSide& data, std::optional<double> weight, std::vector<Index> 
     for (Index i : chosen) {
         if (i < 0 || i >= controls)
             throw InvalidInput(
-                fmt::format("pia: chosen control point {} is outside 0 to {}", i, controls - 1));
+                fmt::format("moving: control point {} is outside 0 to {}", i, controls - 1));
         moves_allowed_[static_cast<std::size_t>(i)] = true;
     }
 }
