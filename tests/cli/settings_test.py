@@ -96,7 +96,7 @@ class Settings(unittest.TestCase):
 
     def test_settings_change_what_is_iterated(self):
         """The default written out gives the same control points, another value other ones."""
-        for method, default, other in (("epia", "eta=0.6", "eta=0.99"), ("epia", "smoothing=4", "smoothing=0"), ("cg", "plain=0", "plain=1"),
+        for method, default, other in (("epia", "screen=1", "screen=0"), ("epia", "smoothing=4", "smoothing=0"), ("cg", "plain=0", "plain=1"),
                                        ("barzilai-borwein", "memory=10", "memory=1"), ("pia", "weight=1", "weight=0.5")):
             points = []
             for setting in (None, default, other):
