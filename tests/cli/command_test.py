@@ -141,7 +141,7 @@ class Refusals(Command):
                                 ("a fit to a tolerance cannot take a rule for knots; direct, lspia, mlspia, ... can, without what else is asked", "-t", 1, "--knots", "uniform"),
                                 ("method direct cannot limit the number of control points of a tolerance; search can, without what else is asked", "-n", 20, "--max-control-points", 5),
                                 ("method direct cannot take corners; search can, without what else is asked", "-n", 20, "--corners", "3"),
-                                ("method mlspia cannot move only some control points; pia can", "-n", 20, "-m", "mlspia", "--moving", "3"),
+                                ("method mlspia cannot move only some control points; pia, epia can", "-n", 20, "-m", "mlspia", "--moving", "3"),
                                 ("--smooth-order: it needs --smooth", "-n", 20, "--smooth-order", 3),
                                 ("--spacing: it is for --heights", "-n", 20, "--spacing", "2,2"),
                                 ("--interpolate all: a list like 0,20,40 or a file is needed", "-n", 20, "--interpolate", "all"),
