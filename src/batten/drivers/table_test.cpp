@@ -319,7 +319,8 @@ bool shows(Request request, const Ask& ask, const FitResult& result) {
             return report.goals_met() ==
                    (deviation_of(result, ask, marked) < 2e-9 &&
                     deviation_of(result, ask, also_hit) < 2e-9 &&
-                    (ask.options.stop.deviation == 0 || report.deviation.maximum <= 0.02));
+                    (ask.options.stop.deviation == 0 || report.deviation.maximum <= 0.02) &&
+                    (!ask.options.tolerance.stated() || report.tolerance_ratio <= 1));
         return !report.goals_met() || (deviation_of(result, ask, also_hit) < 1e-8 &&
                                        deviation_of(result, ask, marked) < 1e-8);
     case Request::tangents:
