@@ -393,7 +393,7 @@ class Tolerance(InFolder):
             ("corner 2: too few samples between it and the corner or end beside it; a piece of degree 3 needs 4", "--tolerance", 1, "--corners", "2"),
             ("--smooth -1: auto or a positive number is needed", "--smooth=-1"),
             ("8 constraints on 6 control points: at most as many are possible", "--tolerance", 1, "--interpolate", "0,9,18,27,36,45,54,63", "--max-control-points", 6),
-            ("method lspia cannot fit to a tolerance; search can", "--tolerance", 1, "--method", "lspia"),
+            ("method lspia cannot fit to a tolerance; epia, search can", "--tolerance", 1, "--method", "lspia"),
         ):
             done = subprocess.run([BATTEN, "fit", path, *map(str, arguments)], capture_output=True, text=True)
             self.assertEqual((done.returncode, done.stderr), (2, f"batten: {message}\n"))
