@@ -36,6 +36,17 @@ FitOptions clspia_options(std::vector<Index> control, std::vector<Index> exact) 
     return options;
 }
 
+/// One factor for all multipliers and one for all control points, 1 / beta_max and 1 / gamma_max,
+/// where batten by itself has better ones.
+void as_printed(const Samples& samples, FitOptions& options) {
+    FitOptions asked = options;
+    asked.method.settings["row_sums"] = 0;
+    asked.stop.max_iterations = 0;
+    const Settings found = fit(samples, asked).report.settings;
+    options.method.settings["mu"] = 1 / found.at("beta_max");
+    options.method.settings["mu_1"] = found.at("gamma_max");
+}
+
 /// A line of Table 1 or 2: E_k is the mean square of what the exact samples lack.
 struct Example {
     std::string name;
@@ -53,6 +64,7 @@ Table line(const Example& example, const std::vector<std::size_t>& steps, const 
     const Samples samples = real ? *real : generate(example.built_in, example.samples);
     FitOptions options = clspia_options(example.control, every(example.exact_step, samples.size()));
     const auto exact = static_cast<double>(options.hold.interpolate.size());
+    as_printed(samples, options);
     const std::string stem = fmt::format("{}{}", kind, errors.size() + 1);
     const FitResult result = drawn_fit(samples, options, workshop, stem, {0, 1, 3, 7});
     Series series{example.name.substr(example.name.find(", ") + 2), {}}; // behind "Table 1, "

@@ -138,9 +138,10 @@ std::unique_ptr<Method> iteration_for(const Equations& equations, const Problem&
     const Constraints exact = with_best_lengths(system, equations.held.independent(system.size()));
     return std::make_unique<Clspia>(
         system, exact, exactness * problem.size,
-        ClspiaSettings{setting(s, "mu"), setting(s, "mu_1"), setting(s, "inner_tolerance"),
-                       setting(entry, s, "eigenvalue_tolerance"), setting(entry, s, "lambda"),
-                       static_cast<Index>(setting(entry, s, "warm_start"))});
+        ClspiaSettings{setting(s, "mu"), setting(s, "mu_1"), stated_row_sums(s),
+                       setting(s, "inner_tolerance"), setting(entry, s, "eigenvalue_tolerance"),
+                       setting(entry, s, "lambda"),
+                       static_cast<Index>(setting(entry, s, "warm_start")), exactness});
 }
 
 Course iterated_from_start(const Equations& equations, const Problem& problem,

@@ -15,6 +15,10 @@ namespace batten {
 Clspia::Clspia(const NormalSystem& system, Constraints constraints, double exactness,
                ClspiaSettings settings)
     : system_(system),
+      steps_(system,
+             settings.row_sums.value_or(settings.mu || settings.mu_1 ? RowSums::never
+                                                                     : RowSums::always),
+             settings.eigenvalue_tolerance),
       constraints_(constraints.balanced()),
       exactness_(exactness),
       given_(settings),
@@ -33,15 +37,16 @@ void Clspia::start(PointSet& control) {
     cut_off_.assign(count, false);
     gap_before_.assign(count, std::numeric_limits<double>::infinity());
     for (Index k = 0; k < given_.warm_start; ++k)
-        add_scaled(control, 1 / mu_1_, system_.gradient(control));
+        add_scaled(control, 1 / mu_1_, steps_.at(control));
     reference_ =
         std::hypot(frobenius_norm(system_.gradient(control)), frobenius_norm(gap(control)));
 }
 
 void Clspia::choose_inner_step() {
-    const ExtremeEigenvalues gamma = extreme_eigenvalues(system_, given_.eigenvalue_tolerance);
-    setup_products_ = gamma.products;
-    gamma_max_ = (1 + given_.eigenvalue_tolerance) * gamma.largest;
+    steps_.start();
+    setup_products_ = steps_.setup_products();
+    const ExtremeEigenvalues& gamma = steps_.eigenvalues().values;
+    gamma_max_ = (1 + given_.eigenvalue_tolerance) * gamma.largest; // it is known from below
     mu_1_ = given_.mu_1.value_or((gamma.smallest + gamma_max_) / 2);
     check_setting("clspia", "mu_1", mu_1_, {.low = gamma.largest / 2}, "its region of convergence");
 }
@@ -68,6 +73,15 @@ PointSet Clspia::gap(const PointSet& control) const {
     return result;
 }
 
+bool Clspia::constraints_hold() const {
+    for (Index j = 0; j < gap_.size(); ++j) {
+        const double length = constraints_.is_position(j) ? 0 : norm(constraints_.values()[j]);
+        if (norm(gap_[j]) > (length > 0 ? given_.part_of_derivative * length : exactness_))
+            return false;
+    }
+    return true;
+}
+
 const PointSet& Clspia::propose(const PointSet& control) {
     gap_ = gap(control);
     largest_gap_ = largest_length(gap_);
@@ -80,6 +94,7 @@ const PointSet& Clspia::propose(const PointSet& control) {
     add_scaled(moves_, -1.0, constraints_.apply_transposed(multipliers_, system_.size()));
     error_ = inner_product(gap_, gap_);
     norm_ = std::sqrt(inner_product(moves_, moves_) + error_);
+    steps_.scale(moves_);
     for (double& x : moves_.values()) x /= mu_1_; // eq. 8
     return moves_;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <batten/iterate/method.hpp>
-#include <batten/solve/extreme_eigenvalues.hpp>
+#include <batten/iterate/step_gradient.hpp>
 #include <batten/solve/schur.hpp>
 #include <batten/system/constraints.hpp>
 #include <batten/system/normal_system.hpp>
@@ -17,8 +16,10 @@ struct ClspiaSettings {
     /// Outer step, in (0, 2 / beta_max), beta of S = C (A^T A)^{-1} C^T; else S^{-1}.
     std::optional<double> mu{};
     /// The inner step is 1 / mu_1, mu_1 above gamma_max / 2, gamma of A^T A; else (gamma_min +
-    /// gamma_max) / 2.
+    /// gamma_max) / 2, gamma of diag(1/s) A^T A for the row sums s [LinCaoZhang2018].
     std::optional<double> mu_1{};
+    /// Whether inner steps are over row sums; else where neither factor is stated.
+    std::optional<RowSums> row_sums{};
     /// The inner loop ends when max |Delta| is at most this; else after two steps, where a step
     /// factor is stated at a hundredth of the largest constraint error at hand.
     std::optional<double> inner_tolerance{};
@@ -27,6 +28,8 @@ struct ClspiaSettings {
     double lambda = 0;
     /// LSPIA steps before the first iteration.
     Index warm_start = 0;
+    /// A derivative holds when it lacks at most this part of its length.
+    double part_of_derivative = 1e-9;
 };
 
 /// Constrained LSPIA [ChangMaDeng2023, eq. 8 to 10 and Algorithm 2]: LSPIA steps on A^T A P = A^T Q
@@ -37,7 +40,7 @@ struct ClspiaSettings {
 class Clspia : public Method {
   public:
     /// `system` without the interpolated samples; `constraints` relative to its centre,
-    /// independent, and met when none lacks more than `exactness` (a length).
+    /// independent; positions hold when none lacks more than `exactness` (a length).
     /// Throws InvalidInput when `exactness` is negative or not finite.
     Clspia(const NormalSystem& system, Constraints constraints, double exactness,
            ClspiaSettings settings = {});
@@ -56,7 +59,7 @@ class Clspia : public Method {
     Settings settings() const override;
     std::string note() const override;
     double constraint_error() const override { return error_; }
-    bool constraints_hold() const override { return largest_gap_ <= exactness_; }
+    bool constraints_hold() const override;
 
   private:
     void choose_inner_step();
@@ -66,6 +69,7 @@ class Clspia : public Method {
     bool enough(double largest_move) const;
 
     const NormalSystem& system_;
+    StepGradient steps_; ///< of the inner loop
     Constraints constraints_;
     double exactness_;
     ClspiaSettings given_;

@@ -2,6 +2,7 @@
 
 #include <batten/iterate/method.hpp>
 #include <batten/iterate/setting.hpp>
+#include <batten/iterate/step_gradient.hpp>
 #include <batten/system/normal_system.hpp>
 
 #include <memory>
@@ -39,6 +40,9 @@ std::optional<double> setting(const Settings& settings, const std::string& name)
 
 /// The setting of that name; the number of the table when it was not given.
 double setting(const MethodEntry& entry, const Settings& settings, const std::string& name);
+
+/// What `row_sums` says; nothing when it was not given.
+std::optional<RowSums> stated_row_sums(const Settings& settings);
 
 /// The iteration `name` on a normal system alone: not `auto` or `direct`, which are no iterations,
 /// nor `pia`, `epia` and `clspia`, which need more than the system.

@@ -50,7 +50,7 @@ Constraints Constraints::with_lengths(std::span<const double> lengths) const {
 Constraints Constraints::balanced() const {
     Constraints result = *this;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-        if (std::abs(sums_[k]) > 0.5) continue; // positions
+        if (is_position(static_cast<Index>(k))) continue;
         double square = 0;
         for (const Entry& entry : rows_[k]) square += entry.value * entry.value;
         const double scale = 1 / std::sqrt(square);

@@ -20,6 +20,9 @@ class Constraints {
     const PointSet& values() const { return values_; }
     const std::string& name(Index row) const { return names_[static_cast<std::size_t>(row)]; }
 
+    /// Whether the row is of a position, not of a derivative.
+    bool is_position(Index row) const { return sums_[static_cast<std::size_t>(row)] > 0.5; }
+
     /// Adds: the derivative of the given orders (0 each: the point) at `parameter` equals `value`.
     /// `name` is what messages call it.
     void add(const std::vector<KnotVector>& axes, std::span<const double> parameter,
