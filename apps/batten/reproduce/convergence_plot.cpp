@@ -119,7 +119,7 @@ std::string line(const Series& series, const Axis& x, const Axis& y, const std::
         }
         pen_down = shown;
     }
-    return fmt::format(R"(<path d="{}" fill="none" stroke-width="1.8" {}/>)"
+    return fmt::format(R"(<path d="{}" fill="none" stroke-width="1.5" {}/>)"
                        "\n",
                        path, style);
 }

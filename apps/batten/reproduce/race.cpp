@@ -88,8 +88,9 @@ std::vector<Course> courses() {
             {"volume", generate("bent-block", {40, 24, 16}), with_control({12, 8, 6})}};
 }
 
-constexpr std::array racers{"lspia",    "lin2018",          "alspia",  "mlspia", "chebyshev",
-                            "nesterov", "barzilai-borwein", "salspia", "cg"};
+constexpr std::array racers{
+    "lspia",   "lin2018", "alspia",   "mlspia", "chebyshev", "nesterov", "barzilai-borwein",
+    "salspia", "plspia",  "anderson", "rpia",   "cg"};
 
 /// Iterations until the gradient is `goal` of the first, and the seconds that these took.
 Table run(const Course& course, std::size_t number, Workshop& workshop) {
