@@ -35,7 +35,8 @@ void Clspia::start(PointSet& control) {
     multipliers_.fill(given_.lambda);
     const auto count = static_cast<std::size_t>(constraints_.size());
     cut_off_.assign(count, false);
-    gap_before_.assign(count, std::numeric_limits<double>::infinity());
+    least_gap_.assign(count, std::numeric_limits<double>::infinity());
+    idle_.assign(count, 0);
     for (Index k = 0; k < given_.warm_start; ++k)
         add_scaled(control, 1 / mu_1_, steps_.at(control));
     reference_ =
@@ -100,15 +101,18 @@ const PointSet& Clspia::propose(const PointSet& control) {
 }
 
 /// Eq. 10, at the last control points of the inner loop; of a constraint whose moves are cut off
-/// only when its gap has become less, else the multiplier would wind up. Whether any moved.
+/// only while its gap still becomes less now and then, else the multiplier would wind up. Whether
+/// any moved.
 bool Clspia::move_multipliers() {
     const PointSet steps = given_.mu ? gap_ : schur_->solve(gap_);
+    constexpr int patience = 100;
     bool moved = false;
     for (Index j = 0; j < gap_.size(); ++j) {
         const auto k = static_cast<std::size_t>(j);
         const double length = norm(gap_[j]);
-        if (cut_off_[k] && length >= gap_before_[k]) continue;
-        gap_before_[k] = length;
+        idle_[k] = length < least_gap_[k] ? 0 : idle_[k] + 1;
+        least_gap_[k] = std::min(length, least_gap_[k]);
+        if (cut_off_[k] && idle_[k] > patience) continue;
         for (std::size_t d = 0; d < gap_[j].size(); ++d)
             multipliers_[j][d] += given_.mu.value_or(1) * steps[j][d];
         moved = true;

@@ -88,8 +88,9 @@ class Clspia : public Method {
     Index outer_ = 1;
     Index inner_before_ = 0; ///< when the inner loop began
     bool inner_done_ = false;
-    std::vector<bool> cut_off_{};      ///< constraints that the moves made did little for
-    std::vector<double> gap_before_{}; ///< lengths when the multipliers last moved
+    std::vector<bool> cut_off_{};     ///< constraints that the moves made did little for
+    std::vector<double> least_gap_{}; ///< lengths so far, when multipliers could move
+    std::vector<int> idle_{};         ///< how often none was less since
 };
 
 } // namespace batten

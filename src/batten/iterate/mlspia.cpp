@@ -68,8 +68,9 @@ void Mlspia::start(PointSet& control) {
     gradient_.start();
     const WorkingEigenvalues& working = gradient_.eigenvalues();
     ExtremeEigenvalues sigma2 = working.values;
-    sigma2.largest *=
-        1 + gradient_.tolerance(); // it is known from below, and eq. 11 leaves no room
+    // the best weights leave eq. 11 this part of the largest as room, and it is known from below
+    if (gradient_.tolerance() > sigma2.smallest / sigma2.largest)
+        sigma2.largest *= 1 + gradient_.tolerance();
     setup_products_ = gradient_.setup_products();
     choose_weights(sigma2);
     // Lemma 3: 1 - omega and the roots of eq. 16; their modulus is largest at one of the extreme

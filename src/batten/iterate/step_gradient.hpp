@@ -1,7 +1,7 @@
 #pragma once
 
 #include <batten/iterate/method.hpp>
-#include <batten/solve/extreme_eigenvalues.hpp>
+#include <batten/solve/working_eigenvalues.hpp>
 #include <batten/system/normal_system.hpp>
 
 namespace batten {
