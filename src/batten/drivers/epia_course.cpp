@@ -2,10 +2,33 @@
 
 #include <batten/core/vectors.hpp>
 #include <batten/drivers/iteration.hpp>
+#include <batten/problem/held.hpp>
 
 #include <algorithm>
 
 namespace batten {
+
+namespace {
+
+/// Ends at no stop before the interpolated samples are hit.
+class HittingPia : public Pia {
+  public:
+    HittingPia(const DataSide& data, const Problem& problem)
+        : Pia(data, 1, problem.options.method.moving,
+              Divergence::unasked), // a growing error inserts a knot
+          held_(problem.options.hold.interpolate),
+          least_(exactness * problem.size) {}
+
+    bool constraints_hold() const override {
+        return std::ranges::all_of(held_, [&](Index i) { return norm(residual()[i]) <= least_; });
+    }
+
+  private:
+    const std::vector<Index>& held_;
+    double least_;
+};
+
+} // namespace
 
 EpiaCourse::EpiaCourse(const Problem& problem, double t_c)
     : problem_(problem), t_c_(t_c), left_(problem.options.stop.max_iterations) {
@@ -27,7 +50,7 @@ double EpiaCourse::farthest(const PointSet& residual) const {
 
 EpiaCourse::Run EpiaCourse::run(const DataSide& data, PointSet start, bool full) {
     const FitOptions& given = problem_.options;
-    Pia pia(data, 1, given.method.moving, Divergence::unasked); // a growing error inserts a knot
+    HittingPia pia(data, problem_);
     FitOptions options = given;
     options.most_frames = 0; // their polygons would be of several sizes
     options.stop.max_iterations = left_;
@@ -45,10 +68,12 @@ EpiaCourse::Run EpiaCourse::run(const DataSide& data, PointSet start, bool full)
         entries_.push_back({now.gradient_norm, e_c, now.control.size()});
         if (given.observer && given.observer(now) == Continue::no) return Continue::no;
         error = farthest(pia.residual());
-        within = tightest_ > 0 && error <= tightest_;
+        const double precision = std::max(given.stop.deviation, tightest_);
+        const bool close = precision > 0 && error <= precision; // but for interpolated samples
+        within = tightest_ > 0 && close && pia.constraints_hold();
         insert = due; // the moves after which the insertion is due have been made
         if (insert || within) return Continue::no;
-        due = !full && (e_c < t_c_ || error > last_error_);
+        due = !full && !close && (e_c < t_c_ || error > last_error_);
         last_error_ = error;
         return Continue::yes;
     };

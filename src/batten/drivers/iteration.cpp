@@ -132,12 +132,14 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     FitReport& report = course.report;
     StepLimit watched;
     double wanted = 0;
+    double made = 0;
     if (limit) {
         report.allowed_inflections =
             inflection_count(course.control, closure, {kept_roundings, start.centre});
         watched = [&](const PointSet& polygon, PointSet& moves) {
             wanted = largest_length(moves);
             limit(polygon, moves);
+            made = largest_length(moves);
         };
     }
     const Summary summary =
@@ -156,8 +158,12 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
     if (const std::string stopped = stop_of_turns(kept, course.control, closure); !stopped.empty())
         report.notes.push_back(stopped);
+    constexpr double next_to_nothing = 1e-6; // of the move that was wanted
     const double rounding = std::numeric_limits<double>::epsilon() * largest_length(course.control);
-    if (summary.termination == Termination::stalled && wanted > rounding) report.held_back = wanted;
+    const bool held =
+        summary.termination == Termination::stalled ||
+        (summary.termination == Termination::iteration_limit && made <= next_to_nothing * wanted);
+    if (held && wanted > rounding) report.held_back = wanted;
     return course;
 }
 

@@ -46,13 +46,14 @@ bool determined(const NormalSystem& system) {
 }
 
 /// CLSPIA approximates the samples that are not held [ChangMaDeng2023, section 2]; where these do
-/// not determine every control point all of them, which have the same constrained minimum.
+/// not determine every control point, or roughness is weighed against them, all of them, which have
+/// the same constrained minimum.
 Equations assembled(const Problem& problem, std::string_view method) {
     Equations result{fixed_knots(problem), nullptr, Constraints(problem.samples.dim())};
     const HoldOptions& hold = problem.options.hold;
     const Constraints held =
         held_constraints(result.axes, problem.samples, problem.parameters, hold);
-    if (method == "clspia" && !hold.interpolate.empty()) {
+    if (method == "clspia" && !hold.interpolate.empty() && !problem.options.smooth.wanted) {
         std::vector<Index> exact = hold.interpolate;
         std::ranges::sort(exact);
         const Subset rest = Subset::without(exact, problem.samples.size());

@@ -114,7 +114,7 @@ Summary iterate(Method& method, PointSet& control, const StopRule& stop,
         if (now.iterations >= stop.max_iterations) return ended(Termination::iteration_limit);
         if (hooks.limit) hooks.limit(control, moves);
         largest_move = largest_length(moves);
-        if (vanish(largest_move, control)) return ended(Termination::stalled);
+        if (vanish(largest_move, control) && !method.rests()) return ended(Termination::stalled);
         add_scaled(control, 1.0, moves);
         method.accept(moves);
     }

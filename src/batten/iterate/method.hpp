@@ -48,6 +48,9 @@ class Method {
     virtual double constraint_error() const { return 0; }
     /// Whether the constraints are met closely enough at the last propose() to end there.
     virtual bool constraints_hold() const { return true; }
+    /// Whether the last propose() moves nothing for now, which is no end: there is a memory to
+    /// fill.
+    virtual bool rests() const { return false; }
     /// The weights in use, known after start().
     virtual Settings settings() const { return {}; }
     /// What the user should know of the problem, found at start(): a sentence, or nothing.

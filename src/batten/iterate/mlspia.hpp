@@ -39,6 +39,7 @@ class Mlspia : public Method {
     void start(PointSet& control) override;
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override;
+    bool rests() const override { return last_.empty() && given_.lambda == 0.0; }
     double gradient_norm() const override { return gradient_.norm(); }
     Settings settings() const override;
     double predicted_rate() const override { return rate_; }

@@ -1,7 +1,7 @@
 #include <batten/iterate/plspia.hpp>
 
 #include <batten/iterate/methods.hpp>
-#include <batten/solve/extreme_eigenvalues.hpp>
+#include <batten/solve/working_eigenvalues.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +44,6 @@ Plspia::Plspia(const NormalSystem& system, int band, std::optional<double> relax
       eigenvalue_tolerance_(eigenvalue_tolerance) {}
 
 void Plspia::start(PointSet&) {
-    constexpr double ill_determined = 1e-6; // smallest beside largest eigenvalue
     check_setting("plspia", "band", band_);
     check_setting("plspia", "eigenvalue_tolerance", eigenvalue_tolerance_);
     const bool banded = !system_.factors().empty();
@@ -57,8 +56,8 @@ void Plspia::start(PointSet&) {
         e = preconditioned_extremes(system_, preconditioning_, eigenvalue_tolerance_);
         setup_products_ = e.products;
         if (banded) e.largest = std::max(e.largest, 1.0);
-        if (e.smallest <= ill_determined * e.largest)
-            note_ = "ill-determined: eigenvalues down to a millionth of the largest or less";
+        if (e.smallest <= least_determined * e.largest)
+            note_ = "ill-determined: the smallest eigenvalue is below 1e-5 of the largest";
     }
     if (!note_.empty()) { // the best factor would leave the largest modes where they are
         if (!banded) preconditioning_ = Preconditioning::row_sums(system_);
