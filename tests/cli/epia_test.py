@@ -199,6 +199,16 @@ class Precision(Epia):
         _, short = self.fit(points, "--tolerances", "own.txt", "--max-iterations", 3, status=4)
         self.assertEqual(short["verdict"], "not met: iteration_limit after 3 iterations")
 
+    def test_no_precision_ends_it_before_interpolated_samples_are_hit(self):
+        points = wave(300) + 0.002 * np.random.default_rng(3).normal(size=(300, 2))
+        for exact, precision in (("20", 0.03), ("100,101,150", 0.02), ("20,21,200", 0.01)):
+            for how in ("--tolerance", "--stop-deviation"):
+                spline, report = self.fit(points, how, precision, "--interpolate", exact, status=0)
+                away = np.linalg.norm(evaluate(spline, chord(points)) - points, axis=1)
+                self.assertLess(away[[int(i) for i in exact.split(",")]].max(), 1e-9 * np.ptp(points, axis=0).max() * 2)
+                self.assertLess(away.max(), precision)
+                self.assertLess(report["control_shape"][0], 100)  # while it waits no knot comes
+
     def test_a_stated_number_is_never_exceeded_and_43_samples_take_13_control_points(self):
         points = wave(43)
         for n in (4, 7, 13, 20):

@@ -125,9 +125,11 @@ class Course(InFolder):
             data = np.column_stack([3 * np.cos(angle), np.sin(angle)])
             _, control, summary = self.pia(data, "-n", 12, "--preserve", "convexity", "--max-iterations", 3000)
             self.assertTrue((signs(control) * signs(data) >= 0).all(), seed)  # what locks is a turn that has come to its rounding
-            if summary["termination"] != "stalled":
+            if "held_back" not in summary:
                 continue
             locked += 1
+            self.assertEqual(summary["goals"][0]["goal"], "relative gradient")
+            self.assertFalse(summary["goals"][0]["met"])
             note = " ".join(summary["notes"])
             found = re.search(r"their sum over (\d+) steps is (\S+),", note)
             self.assertIsNotNone(found, note)

@@ -39,9 +39,20 @@ struct Line {
     const char *iterations, *error = "", *rms = "", *largest = "";
 };
 
+/// Condition number of A, by MLSPIA's best omega = 4 k / (1 + k)^2.
+double condition(const FitReport& mlspia) {
+    const double omega = mlspia.settings.at("omega");
+    return (2 - omega + 2 * std::sqrt(1 - omega)) / omega;
+}
+
+/// What was kept and what taken away of an experiment with holes.
+struct Counts {
+    const char *kept = "", *taken = "";
+};
+
 /// Four figures and the time for each method, of the samples or of those that were taken away.
-Table compare(const std::string& name, const Experiment& experiment,
-              const std::vector<Line>& lines) {
+Table compare(const std::string& name, const Experiment& experiment, const char* kappa,
+              const std::vector<Line>& lines, const Counts& counts = {}) {
     Table table{name, {}};
     const bool holes = experiment.hole.size() > 0;
     const char* where = holes ? " in the holes" : "";
@@ -57,6 +68,8 @@ Table compare(const std::string& name, const Experiment& experiment,
         const FitResult result = run(experiment, method);
         const double seconds = clock.lap();
         const Deviation there = deviation(result);
+        if (method == std::string_view("mlspia"))
+            table.rows.push_back({"condition number of A", kappa, condition(result.report)});
         if (method != std::string_view("direct")) {
             table.rows.push_back(
                 {who + "iterations", iterations, static_cast<double>(result.report.iterations)});
@@ -66,6 +79,10 @@ Table compare(const std::string& name, const Experiment& experiment,
         table.rows.push_back({who + "largest" + where, largest, there.maximum});
         table.rows.push_back({who + "seconds, set-up counted", "", seconds});
     }
+    if (!holes) return table;
+    table.rows.push_back(
+        {"samples kept", counts.kept, static_cast<double>(experiment.samples.size())});
+    table.rows.push_back({"taken away", counts.taken, static_cast<double>(experiment.hole.size())});
     return table;
 }
 
@@ -96,11 +113,12 @@ Table memories(const Experiment& peaks) {
 
 /// A grid's triangulation is not unique: neither is the start, nor what depends on it.
 Table franke_table() {
-    Table table = compare("4.8 Franke with holes", franke_with_holes(),
+    Table table = compare("4.8 Franke with holes", franke_with_holes(), "",
                           {{"lin2018", "40", "9.335", "2.0593e-2", "8.0855e-2"},
                            {"alspia", "53", "9.846", "2.9800e-2", "8.4408e-2"},
                            {"salspia", "14", "7.606", "2.9726e-2", "8.4407e-2"},
-                           {"cg", ""}});
+                           {"cg", ""}},
+                          {"8627", "1574"});
     table.data = Data::stand_in;
     table.why = "a start over another of Delaunay's triangulations";
     return table;
@@ -111,7 +129,7 @@ Table mount_eden_table(const Workshop& workshop) {
     const char* const file = "mteden860x600.npy";
     const std::optional<PointSet> heights = workshop.real_table(file);
     if (!heights) return {name, {}, Data::none, fmt::format("{} is not in --data", file)};
-    Table table = compare(name, over_grid(mount_eden(*heights), 121),
+    Table table = compare(name, over_grid(mount_eden(*heights), 121), "22.2401",
                           {{"lspia", "1262", "9.942"},
                            {"alspia", "33", "9.743"},
                            {"mlspia", "114", "8.990"},
@@ -143,7 +161,7 @@ std::vector<Table> peng_li(Workshop& workshop) {
     take_away(helix_holes, near({0.25, 0.50, 0.75}));
     const char* const private_data = "the authors' points are not to be had";
     std::vector<Table> tables;
-    tables.push_back(compare("4.1 blob", along_curve(blob(15001), 3001),
+    tables.push_back(compare("4.1 blob", along_curve(blob(15001), 3001), "4.71915",
                              {{"lspia", "77", "9.336", "1.073e-5", "2.552e-5"},
                               {"alspia", "6", "9.415", "2.383e-5", "1.081e-3"},
                               {"mlspia", "25", "7.338", "9.510e-6", "2.288e-5"},
@@ -151,7 +169,7 @@ std::vector<Table> peng_li(Workshop& workshop) {
                               {"salspia", "4", "8.164", "2.279e-5", "1.135e-3"},
                               {"cg", ""},
                               {"direct", ""}}));
-    tables.push_back(compare("4.2 helix", helix_10001,
+    tables.push_back(compare("4.2 helix", helix_10001, "4.72286",
                              {{"lspia", "77", "9.646", "2.084e-5", "3.836e-5"},
                               {"alspia", "7", "6.292", "3.859e-5", "1.503e-3"},
                               {"mlspia", "25", "7.736", "1.867e-5", "3.482e-5"},
@@ -159,7 +177,7 @@ std::vector<Table> peng_li(Workshop& workshop) {
                               {"salspia", "4", "9.155", "4.615e-5", "1.875e-3"},
                               {"cg", ""},
                               {"direct", ""}}));
-    tables.push_back(compare("4.4 Dini", over_grid(dini(), 31),
+    tables.push_back(compare("4.4 Dini", over_grid(dini(), 31), "21.1619",
                              {{"lspia", "213", "9.756", "3.383e-4", "9.728e-4"},
                               {"alspia", "37", "9.188", "1.273e-3", "2.323e-2"},
                               {"mlspia", "82", "6.922", "3.110e-4", "1.010e-3"},
@@ -167,7 +185,7 @@ std::vector<Table> peng_li(Workshop& workshop) {
                               {"salspia", "14", "3.371", "6.246e-4", "1.231e-2"},
                               {"cg", ""},
                               {"direct", ""}}));
-    tables.push_back(compare("4.5 peaks", peaks_121,
+    tables.push_back(compare("4.5 peaks", peaks_121, "21.2209",
                              {{"lspia", "1091", "9.942", "3.408e-4", "1.892e-3"},
                               {"alspia", "15", "8.701", "7.832e-4", "1.128e-2"},
                               {"mlspia", "109", "8.394", "3.248e-4", "1.862e-3"},
@@ -175,16 +193,18 @@ std::vector<Table> peng_li(Workshop& workshop) {
                               {"salspia", "8", "5.731", "5.827e-4", "7.983e-3"},
                               {"cg", ""},
                               {"direct", ""}}));
-    tables.push_back(compare("4.1 with holes", blob_holes,
+    tables.push_back(compare("4.1 with holes", blob_holes, "",
                              {{"lin2018", "18", "9.349", "7.273e-2", "0.18066"},
                               {"alspia", "38", "9.624", "0.11878", "0.22715"},
                               {"salspia", "14", "4.402", "0.11536", "0.22019"},
-                              {"cg", ""}}));
-    tables.push_back(compare("4.2 with holes", helix_holes,
+                              {"cg", ""}},
+                             {"267", "64"}));
+    tables.push_back(compare("4.2 with holes", helix_holes, "",
                              {{"lin2018", "26", "8.705", "0.48286", "1.1494"},
                               {"alspia", "32", "9.064", "0.64879", "1.1977"},
                               {"salspia", "14", "7.512", "0.64236", "1.1959"},
-                              {"cg", ""}}));
+                              {"cg", ""}},
+                             {"458", "63"}));
     tables.push_back(franke_table());
     tables.push_back(mount_eden_table(workshop));
     tables.push_back({"4.3 reindeer", {}, Data::none, private_data});

@@ -60,6 +60,7 @@ std::string verdict(const Table& table) {
     if (table.data == Data::stand_in) return "stand-in: " + table.why;
     if (printed == 0) return table.pictures.empty() ? "ours alone" : "drawn";
     if (same == printed) return fmt::format("to the digit, {} figures", printed);
+    if (same == 0) return fmt::format("{} figures, {}", printed, how_far(furthest));
     return fmt::format("{} of {} figures to the digit, the rest {}", same, printed,
                        how_far(furthest));
 }
@@ -68,12 +69,13 @@ std::string in_words(const Table& table) {
     std::string text = fmt::format("  {}: {}\n", table.name, verdict(table));
     if (!table.pictures.empty()) text += fmt::format("    pictures: {}\n", table.pictures);
     if (!table.rows.empty())
-        text += fmt::format("    {:<56}{:>15}{:>15}{:>10}\n", "", "published", "computed", "ratio");
+        text +=
+            fmt::format("    {:<56} {:>14} {:>14} {:>9}\n", "", "published", "computed", "ratio");
     for (const auto& [what, printed, computed, bound] : table.rows) {
         const double published = number(printed);
         text += fmt::format(
-            "    {:<56}{:>15}{:>15.7g}{:>10}\n", what, printed.empty() ? "-" : printed, computed,
-            printed.empty() || published == 0 ? "-" : fmt::format("{:.4f}", computed / published));
+            "    {:<56} {:>14} {:>14.7g} {:>9}\n", what, printed.empty() ? "-" : printed, computed,
+            printed.empty() || published == 0 ? "-" : fmt::format("{:.5g}", computed / published));
     }
     return text + "\n";
 }
