@@ -111,7 +111,7 @@ std::string line(const Series& series, const Axis& x, const Axis& y, const std::
         const double at = across(x, static_cast<double>(k));
         const bool shown = drawable(series.values[k]);
         // a long series has many iterations to a pixel
-        if (shown && pen_down && at - last < 0.25 && k + 1 < series.values.size()) continue;
+        if (shown && pen_down && at - last < 0.6 && k + 1 < series.values.size()) continue;
         if (shown) {
             path +=
                 fmt::format("{}{:.1f} {:.1f}", pen_down ? "L" : "M", at, up(y, series.values[k]));
