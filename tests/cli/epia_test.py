@@ -182,7 +182,7 @@ class Interpolated(Epia):
 
 class Precision(Epia):
     def test_each_sample_has_its_own(self):
-        points, t = wave(300), None
+        points = wave(300)
         tight = np.arange(300) < 60
         own = np.where(tight, 1e-4, 1e-2)
         np.savetxt(self.folder / "own.txt", own)
@@ -304,7 +304,7 @@ class Surfaces(Epia):
         asked = ["--interpolate", ",".join(map(str, held)), "-n", "18x20", "--max-iterations", 20000]
         spline, report = self.fit(grid, *asked, status=0)
         self.assertLess(report["constraint_error"], 1e-8)
-        self.assertLessEqual(report["control_shape"], [18, 20])
+        self.assertTrue(all(np.array(report["control_shape"]) <= [18, 20]))
 
     def test_clouds_grow(self):
         uv, points = self.cloud()

@@ -253,9 +253,17 @@ class Iterations(Cases):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(words, done.stderr)
 
+    def peng_li(self):
+        """What `reproduce salspia` says, run once."""
+        if not hasattr(Iterations, "said"):
+            data = shared(self, "mteden860x600.npy").parent
+            Iterations.said = subprocess.run([BATTEN, "reproduce", "salspia", "--folder", "r", "--data", data], cwd=self.folder, capture_output=True, text=True,
+                                             timeout=GUARD).stdout
+        return Iterations.said
+
     def test_peng_and_lis_tables_come_out(self):
-        done = subprocess.run([BATTEN, "reproduce", "salspia", "--folder", "r"], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
-        verdicts = dict(re.findall(r"^  salspia  (\S.*?) {2,}(.*)$", done.stdout, re.M))
+        text = self.peng_li()
+        verdicts = dict(re.findall(r"^  salspia  (\S.*?) {2,}(.*)$", text, re.M))
         for full in ("4.1 blob", "4.2 helix", "4.4 Dini", "4.5 peaks"):
             self.assertEqual(verdicts[full], "to the digit, 21 figures")
         for holes in ("4.1 with holes", "4.2 with holes"):
@@ -263,17 +271,15 @@ class Iterations(Cases):
         self.assertEqual(verdicts["Ablation of the step, 4.2"], "to the digit, 6 figures")
         self.assertEqual(verdicts["Lengths of the memory, 4.5"], "to the digit, 10 figures")
         self.assertTrue(verdicts["4.3 reindeer"].startswith("not run: "))
-        rows = re.findall(r"^    (\S.*?) {2,}(\S+) +(\S+) +\S+$", done.stdout, re.M)
+        rows = re.findall(r"^    (\S.*?) {2,}(\S+) +(\S+) +\S+$", text, re.M)
         printed = [(what, float(a), float(b)) for what, a, b in rows if a not in ("-", "published")]
         self.assertGreater(len(printed), 110)
         counts = [(a, b) for what, a, b in printed if "iterations" in what]
-        self.assertLessEqual(sum(a != b for a, b in counts), 1)  # of Franke's start, which is not unique
+        self.assertLessEqual(sum(a != b for a, b in counts), 2)  # of Franke's start, which is not unique, and of another resampling
 
     def test_mount_eden_comes_out_as_recomputed(self):
         # the figures of an independent program on the same heights, another resampling than the paper's
-        data = shared(self, "mteden860x600.npy").parent
-        done = subprocess.run([BATTEN, "reproduce", "salspia", "--folder", "r", "--data", data], cwd=self.folder, capture_output=True, text=True, timeout=GUARD)
-        table = done.stdout.split("4.6 terrain: ")[1].split("\n\n")[0]
+        table = self.peng_li().split("4.6 terrain: ")[1].split("\n\n")[0]
         figures = {what: float(value) for what, value in re.findall(r"^    (\S.*?) {2,}\S+ +(\S+) +\S+$", table, re.M) if value != "computed"}
         for method, iterations, error in (("alspia", 34, 9.4085), ("mlspia", 114, 9.0170), ("nmlspia", 23, 9.8498), ("salspia", 13, 4.7566)):
             self.assertEqual(figures[f"{method}: iterations"], iterations)

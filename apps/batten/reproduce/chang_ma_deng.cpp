@@ -203,7 +203,11 @@ Table figure_9(Workshop& workshop) {
 std::vector<Table> figures_10_and_11(Workshop& workshop) {
     const Samples curve = generate("rose", {curve_samples});
     Table ten{"Fig. 10", {}, Data::stand_in, "rose, 370 samples", "clspia_fig10*.svg"};
-    Table eleven{"Fig. 11", {}, Data::stand_in, "rose, 370 samples", "clspia_fig10d*, fig10f*"};
+    Table eleven{"Fig. 11",
+                 {},
+                 Data::stand_in,
+                 "rose, 370 samples",
+                 "clspia_fig10d*.svg, clspia_fig10f*.svg"};
     const struct {
         const char* panel;
         Index control, exact;

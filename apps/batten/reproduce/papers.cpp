@@ -47,7 +47,7 @@ std::span<const Paper> papers() {
          "The stop rule tests the square of the relative gradient, 1e-6. alspia takes the authors' "
          "cycle of 10000 roots, in which these steps are all but the largest eigenvalue's.",
          peng_li},
-        {"race", "ten problems, every iteration on the normal equations",
+        {"race", "ten problems, twelve iterations on the normal equations",
          "Iterations to a gradient of 1e-6 of the first, at most 2000; the pictures go on to "
          "1e-10.",
          race},

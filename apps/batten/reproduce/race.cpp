@@ -18,7 +18,7 @@ constexpr Index most_iterations = 2000;
 constexpr double goal = 1e-6; ///< of the first gradient's length
 constexpr double drawn_to = 1e-10;
 
-struct Course {
+struct RaceProblem {
     std::string name;
     Samples samples;
     FitOptions options;
@@ -32,7 +32,7 @@ FitOptions with_control(std::vector<Index> control, int degree = 3) {
 }
 
 /// Uniform knots, and no samples over a fifth of the curve: whole spans are undetermined.
-Course curve_with_a_gap() {
+RaceProblem curve_with_a_gap() {
     const Samples rose = generate("rose", {501});
     const Parameters all = parametrize(rose, Parametrization::chord, {Closure::open});
     std::vector<double> points;
@@ -51,7 +51,7 @@ Course curve_with_a_gap() {
 }
 
 /// Random places in the square, without a disk of that radius, heights with some noise.
-Course cloud(const std::string& name, double hole, double crowding) {
+RaceProblem cloud(const std::string& name, double hole, double crowding) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> unit(0, 1);
     std::normal_distribution<double> noise(0, 0.01);
@@ -71,7 +71,7 @@ Course cloud(const std::string& name, double hole, double crowding) {
     return {name, {.points = Points(PointSet(std::move(points), 3))}, options};
 }
 
-std::vector<Course> courses() {
+std::vector<RaceProblem> problems() {
     FitOptions closed = with_control({40, 20});
     closed.shape.closures = {Closure::closed, Closure::closed};
     FitOptions smooth = with_control({120});
@@ -88,12 +88,14 @@ std::vector<Course> courses() {
             {"volume", generate("bent-block", {40, 24, 16}), with_control({12, 8, 6})}};
 }
 
+/// Not here: nmlspia and pmlspia, which are nesterov and mlspia; fairing-pia and monotone-lspia,
+/// whose limits are others.
 constexpr std::array racers{
     "lspia",   "lin2018", "alspia",   "mlspia", "chebyshev", "nesterov", "barzilai-borwein",
     "salspia", "plspia",  "anderson", "rpia",   "cg"};
 
 /// Iterations until the gradient is `goal` of the first, and the seconds that these took.
-Table run(const Course& course, std::size_t number, Workshop& workshop) {
+Table run(const RaceProblem& course, std::size_t number, Workshop& workshop) {
     Table table{course.name, {}};
     std::vector<Series> lines;
     for (const char* method : racers) {
@@ -128,7 +130,7 @@ Table run(const Course& course, std::size_t number, Workshop& workshop) {
 
 std::vector<Table> race(Workshop& workshop) {
     std::vector<Table> tables;
-    for (const Course& course : courses())
+    for (const RaceProblem& course : problems())
         tables.push_back(run(course, tables.size() + 1, workshop));
     return tables;
 }

@@ -45,6 +45,7 @@ bool to_the_digit(const std::string& printed, double computed) {
 
 std::string verdict(const Table& table) {
     if (table.data == Data::none) return "not run: " + table.why;
+    if (table.data == Data::stand_in) return "stand-in: " + table.why;
     int printed = 0;
     int same = 0;
     double furthest = 1;
@@ -57,7 +58,6 @@ std::string verdict(const Table& table) {
         else
             furthest = std::max({furthest, ratio, 1 / ratio});
     }
-    if (table.data == Data::stand_in) return "stand-in: " + table.why;
     if (printed == 0) return table.pictures.empty() ? "ours alone" : "drawn";
     if (same == printed) return fmt::format("to the digit, {} figures", printed);
     if (same == 0) return fmt::format("{} figures, {}", printed, how_far(furthest));
@@ -71,11 +71,13 @@ std::string in_words(const Table& table) {
     if (!table.rows.empty())
         text +=
             fmt::format("    {:<56} {:>14} {:>14} {:>9}\n", "", "published", "computed", "ratio");
-    for (const auto& [what, printed, computed, bound] : table.rows) {
-        const double published = number(printed);
-        text += fmt::format(
-            "    {:<56} {:>14} {:>14.7g} {:>9}\n", what, printed.empty() ? "-" : printed, computed,
-            printed.empty() || published == 0 ? "-" : fmt::format("{:.5g}", computed / published));
+    for (const Row& row : table.rows) {
+        const double published = number(row.printed);
+        text += fmt::format("    {:<56} {:>14} {:>14.7g} {:>9}\n", row.what,
+                            row.printed.empty() ? "-" : row.printed, row.computed,
+                            row.printed.empty() || published == 0
+                                ? "-"
+                                : fmt::format("{:.5g}", row.computed / published));
     }
     return text + "\n";
 }

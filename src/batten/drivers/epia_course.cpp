@@ -86,7 +86,7 @@ EpiaCourse::Run EpiaCourse::run(const DataSide& data, PointSet start, bool full)
                           report_.gradient_norm == 0 &&
                           error > std::max(given.stop.deviation, tightest_);
     if (!full && (still || balanced)) insert = true;
-    if (within && tightest_ > 0) {
+    if (within) {
         insert = false;
         report_.termination = Termination::tolerance_met;
     }

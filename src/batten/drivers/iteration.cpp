@@ -98,9 +98,10 @@ void check_shape(Preserve preserve, const std::vector<KnotVector>& axes, const P
 
 namespace {
 
+constexpr double next_to_nothing = 1e-6; ///< of the moves that were wanted
+
 /// What stopped Algorithm 1 of [LinWangDong2004] short; nothing where it did not.
 std::string stop_of_turns(const KeptTurns& kept, const PointSet& polygon, Closure closure) {
-    constexpr double next_to_nothing = 1e-6;
     if (kept.steps == 0 || !kept.held_by || kept.last > next_to_nothing) return {};
     const Index n = polygon.size();
     const Index at = *kept.held_by;
@@ -158,7 +159,6 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
     if (const std::string stopped = stop_of_turns(kept, course.control, closure); !stopped.empty())
         report.notes.push_back(stopped);
-    constexpr double next_to_nothing = 1e-6; // of the move that was wanted
     const double rounding = std::numeric_limits<double>::epsilon() * largest_length(course.control);
     const bool held =
         summary.termination == Termination::stalled ||

@@ -85,6 +85,7 @@ Ask plain(const Driver& driver, SampleKind kind) {
         options.shape.control_points = curve ? std::vector<Index>{12} : std::vector<Index>{7, 8};
     if (driver.name == "pia") options.stop.max_iterations = 20;
     if (driver.name == "clspia") options.stop.relative_gradient = 1e-6;
+    if (driver.name == "rpia") options.stop.relative_gradient = 1e-4; // a block at a time
     return ask;
 }
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <numeric>
 
 namespace batten {
 
@@ -117,6 +116,8 @@ FairResult fair(const Spline& spline, const FairOptions& options) {
         const auto method = make_method(report.method, system, options.settings);
         report.course = iterate(*method, moves, options.stop);
         report.settings = method->settings();
+        if (method->setup_products() > 0)
+            report.settings["setup_products"] = static_cast<double>(method->setup_products());
     }
     report.energy_after = system.energy(moves);
     report.largest_move = largest_length(moves);

@@ -3,7 +3,6 @@
 #include <batten/system/row_sums.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace batten {
 

@@ -21,11 +21,13 @@ Spline scaled(const Spline& spline, double factor) {
     return {spline.axes(), scaled(spline.control_points(), factor)};
 }
 
-/// Settings that are lengths, or as long as gradients.
-void scale(Settings& settings, double factor) {
-    for (const char* name : {"t_c", "inner_tolerance", "lambda"})
-        if (const auto found = settings.find(name); found != settings.end())
+/// Settings that are lengths, or as long as gradients; MLSPIA's lambda is a part.
+void scale(Settings& settings, std::string_view method, double factor) {
+    for (const std::string_view name : {"t_c", "inner_tolerance", "lambda"}) {
+        const auto found = settings.find(std::string(name));
+        if (found != settings.end() && (name != "lambda" || method == "clspia"))
             found->second *= factor;
+    }
 }
 
 Observer unscaled(const Observer& observer, double factor) {
@@ -62,7 +64,7 @@ FitOptions rescaled(FitOptions options, double factor) {
         boundary.spline = scaled(boundary.spline, factor);
     options.method.control = scaled(std::move(options.method.control), factor);
     options.method.before = scaled(std::move(options.method.before), factor);
-    scale(options.method.settings, factor);
+    scale(options.method.settings, options.method.name, factor);
     options.stop.gradient *= factor;
     options.stop.deviation *= factor;
     options.observer = unscaled(options.observer, factor);
@@ -80,7 +82,7 @@ FitResult rescaled(FitResult result, double factor) {
         *length *= factor;
     report.data_size = std::min(report.data_size, std::numeric_limits<double>::max());
     scale(result.deviations, factor);
-    scale(report.settings, factor);
+    scale(report.settings, report.method, factor);
     for (Goal& goal : report.goals)
         if (goal.name != "inflections" && goal.name != "tangents" &&
             goal.name != "relative gradient" && goal.name != "least functional") {

@@ -12,7 +12,7 @@ namespace batten {
 /// earnest.
 class Alspia : public Method {
   public:
-    explicit Alspia(const NormalSystem& system, Index cycle = 10000,
+    explicit Alspia(const NormalSystem& system, Index cycle = 16,
                     double eigenvalue_tolerance = default_eigenvalue_tolerance,
                     RowSums row_sums = RowSums::where_ill_determined);
 

@@ -9,15 +9,6 @@
 
 namespace batten {
 
-namespace {
-
-void scale_rows(PointSet& x, const std::vector<double>& factors) {
-    for (Index i = 0; i < x.size(); ++i)
-        for (double& value : x[i]) value *= factors[static_cast<std::size_t>(i)];
-}
-
-} // namespace
-
 Anderson::Anderson(const NormalSystem& system, int window)
     : system_(system), window_(static_cast<std::size_t>(window)) {
     check_setting("anderson", "window", window);
@@ -71,9 +62,7 @@ std::vector<double> Anderson::combination() const {
 }
 
 const PointSet& Anderson::propose(const PointSet& control) {
-    residual_ = system_.gradient(control);
-    for (Index i = 0; i < residual_.size(); ++i)
-        if (scales_[static_cast<std::size_t>(i)] == 0) std::ranges::fill(residual_[i], 0.0);
+    residual_ = reached_gradient(system_, control, scales_);
     norm_ = frobenius_norm(residual_);
     scale_rows(residual_, scales_);
     if (!last_residual_.empty()) learn();

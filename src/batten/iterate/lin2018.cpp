@@ -14,17 +14,27 @@ std::vector<double> diagonal_steps(const NormalSystem& system) {
     return steps;
 }
 
+PointSet reached_gradient(const NormalSystem& system, const PointSet& control,
+                          const std::vector<double>& steps) {
+    PointSet gradient = system.gradient(control);
+    for (Index i = 0; i < gradient.size(); ++i)
+        if (steps[static_cast<std::size_t>(i)] == 0) std::ranges::fill(gradient[i], 0.0);
+    return gradient;
+}
+
+void scale_rows(PointSet& rows, const std::vector<double>& factors) {
+    for (Index i = 0; i < rows.size(); ++i)
+        for (double& x : rows[i]) x *= factors[static_cast<std::size_t>(i)];
+}
+
 void Lin2018::start(PointSet&) {
     steps_ = diagonal_steps(system_);
 }
 
 const PointSet& Lin2018::propose(const PointSet& control) {
-    moves_ = system_.gradient(control);
-    for (Index i = 0; i < moves_.size(); ++i)
-        if (steps_[static_cast<std::size_t>(i)] == 0) std::ranges::fill(moves_[i], 0.0);
+    moves_ = reached_gradient(system_, control, steps_);
     norm_ = frobenius_norm(moves_);
-    for (Index i = 0; i < moves_.size(); ++i)
-        for (double& x : moves_[i]) x *= steps_[static_cast<std::size_t>(i)];
+    scale_rows(moves_, steps_);
     return moves_;
 }
 

@@ -29,4 +29,11 @@ class Lin2018 : public Method {
 /// above 1.
 std::vector<double> diagonal_steps(const NormalSystem& system);
 
+/// A^T D (Q - A P), zero for control points whose step is 0.
+PointSet reached_gradient(const NormalSystem& system, const PointSet& control,
+                          const std::vector<double>& steps);
+
+/// Multiplies each row by its factor.
+void scale_rows(PointSet& rows, const std::vector<double>& factors);
+
 } // namespace batten

@@ -65,17 +65,12 @@ Preconditioning Preconditioning::row_sums(const NormalSystem& system) {
 }
 
 void Preconditioning::apply(PointSet& x) const {
-    const auto on_rows = [&](auto factor) {
-        for (Index i = 0; i < x.size(); ++i) {
-            const double f = factor(inverse_diagonal_[static_cast<std::size_t>(i)]);
-            for (double& value : x[i]) value *= f;
-        }
-    };
     if (axes_) {
         x = axes_->solve(std::move(x));
-        on_rows([](double d) { return d > 0 ? 1.0 : 0.0; }); // control points without samples stay
+        for (Index i = 0; i < x.size(); ++i) // control points without samples stay
+            if (inverse_diagonal_[static_cast<std::size_t>(i)] == 0) std::ranges::fill(x[i], 0.0);
     } else if (!inverse_diagonal_.empty()) {
-        on_rows([](double d) { return d; });
+        scale_rows(x, inverse_diagonal_);
     }
 }
 

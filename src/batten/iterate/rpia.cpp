@@ -42,12 +42,9 @@ double Rpia::longest_in(std::size_t block) const {
 
 const PointSet& Rpia::propose(const PointSet& control) {
     constexpr double nothing = 1e-3; // of the longest move
-    moves_ = system_.gradient(control);
-    for (Index i = 0; i < moves_.size(); ++i)
-        if (steps_[static_cast<std::size_t>(i)] == 0) std::ranges::fill(moves_[i], 0.0);
+    moves_ = reached_gradient(system_, control, steps_);
     norm_ = frobenius_norm(moves_);
-    for (Index i = 0; i < moves_.size(); ++i)
-        for (double& x : moves_[i]) x *= steps_[static_cast<std::size_t>(i)];
+    scale_rows(moves_, steps_);
     std::vector<double> longest(traces_.size());
     for (std::size_t b = 0; b < longest.size(); ++b) longest[b] = longest_in(b);
     const double least = nothing * std::ranges::max(longest);

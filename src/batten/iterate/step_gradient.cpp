@@ -25,9 +25,7 @@ void StepGradient::start() {
 }
 
 void StepGradient::scale(PointSet& rows) const {
-    if (over_sums_.empty()) return;
-    for (Index i = 0; i < rows.size(); ++i)
-        for (double& x : rows[i]) x *= over_sums_[static_cast<std::size_t>(i)];
+    if (!over_sums_.empty()) scale_rows(rows, over_sums_);
 }
 
 PointSet StepGradient::at(const PointSet& control) {
