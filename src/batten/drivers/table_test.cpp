@@ -52,12 +52,12 @@ Samples tube() {
 
 Ask cloud() {
     Ask ask;
-    PointSet uv(2000, 2);
-    const PointSet random = testing::random_points(2000, 2, 7);
+    PointSet uv(800, 2);
+    const PointSet random = testing::random_points(800, 2, 7);
     for (std::size_t k = 0; k < uv.values().size(); ++k)
         uv.values()[k] = (random.values()[k] + 1) / 2;
-    PointSet q(2000, 3);
-    for (Index i = 0; i < 2000; ++i) {
+    PointSet q(800, 3);
+    for (Index i = 0; i < 800; ++i) {
         q(i, 0) = uv(i, 0);
         q(i, 1) = uv(i, 1);
         q(i, 2) =
