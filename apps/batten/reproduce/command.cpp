@@ -24,7 +24,7 @@ void print_verdicts(const std::vector<std::pair<std::string, std::vector<Table>>
     fmt::print("In short\n");
     for (const auto& [paper, tables] : all)
         for (const Table& table : tables)
-            fmt::print("  {:<9}{:<46} {}\n", paper, table.name, verdict(table));
+            fmt::print("  {:<9}{:<54} {}\n", paper, table.name, verdict(table));
     fmt::print("\n");
 }
 
