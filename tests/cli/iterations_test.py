@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import insert
 
 from iteration_cases import STEPS, Cases, Normal, by_factors, design
-from judge import BATTEN, GUARD, InFolder, some, shared
+from judge import BATTEN, GUARD, InFolder, SANITIZED, some, shared
 
 
 def salspia(normal, control, steps, memory=10, kind=0):
@@ -256,8 +256,8 @@ class Iterations(Cases):
     def peng_li(self):
         """What `reproduce salspia` says, run once."""
         if not hasattr(Iterations, "said"):
-            data = shared(self, "mteden860x600.npy").parent
-            Iterations.said = subprocess.run([BATTEN, "reproduce", "salspia", "--folder", "r", "--data", data], cwd=self.folder, capture_output=True, text=True,
+            data = [] if SANITIZED else ["--data", shared(self, "mteden860x600.npy").parent]
+            Iterations.said = subprocess.run([BATTEN, "reproduce", "salspia", "--folder", "r", *data], cwd=self.folder, capture_output=True, text=True,
                                              timeout=GUARD).stdout
         return Iterations.said
 
@@ -279,6 +279,8 @@ class Iterations(Cases):
 
     def test_mount_eden_comes_out_as_recomputed(self):
         # the figures of an independent program on the same heights, another resampling than the paper's
+        if SANITIZED:
+            return  # half a million heights: the release judges them
         table = self.peng_li().split("4.6 terrain: ")[1].split("\n\n")[0]
         figures = {what: float(value) for what, value in re.findall(r"^    (\S.*?) {2,}\S+ +(\S+) +\S+$", table, re.M) if value != "computed"}
         for method, iterations, error in (("alspia", 34, 9.4085), ("mlspia", 114, 9.0170), ("nmlspia", 23, 9.8498), ("salspia", 13, 4.7566)):
