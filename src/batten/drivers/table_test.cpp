@@ -465,7 +465,7 @@ TEST(DriverTable, a_refusal_names_drivers_that_can) {
 
 /// Under a sanitizer, where a fit takes ten times as long, a part of the pairs is tried.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t pair_step = 7;
+constexpr std::size_t pair_step = 13;
 #else
 constexpr std::size_t pair_step = 1;
 #endif
@@ -528,7 +528,7 @@ TEST(DriverTable, pairs_tried_in_steps_leave_no_request_out) {
         const std::size_t count = column.list().size();
         EXPECT_EQ(tried_pairs(column, number, 1).size(), count * (count - 1) / 2);
         Requests seen;
-        for (const auto& [a, b] : tried_pairs(column, number++, 7)) seen = seen | Requests{a, b};
+        for (const auto& [a, b] : tried_pairs(column, number++, 13)) seen = seen | Requests{a, b};
         EXPECT_TRUE(seen.covers(column)) << driver.name << " " << to_string(kind);
     });
 }
