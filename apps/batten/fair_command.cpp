@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "export_flags.hpp"
+#include "fit_files.hpp"
 #include "parse.hpp"
 #include "spline_input.hpp"
 
@@ -9,10 +10,8 @@
 #include <batten/io/points_file.hpp>
 #include <batten/io/spline_file.hpp>
 
-#include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <unistd.h>
 
 namespace batten::command {
 
@@ -40,8 +39,7 @@ FairOptions options_of(const Flags& flags) {
 std::vector<FileUse> checked_outputs(const Flags& flags, const CLI::App& app) {
     std::vector<FileUse> inputs{{flags.spline.path, "the spline"}};
     if (!flags.weights.empty()) inputs.push_back({flags.weights, "--weights"});
-    if (flags.points.find_first_not_of("0123456789,") != std::string::npos)
-        inputs.push_back({flags.points, "--points"});
+    if (!is_list(flags.points)) inputs.push_back({flags.points, "--points"});
     std::vector<FileUse> written;
     for (const std::string& output : flags.outputs) {
         check_output(output);
@@ -68,10 +66,7 @@ void run(const Flags& flags, const CLI::App& app) {
     set.put_in_place();
     if (flags.quiet) return;
     print_notes(flags.outputs, scene);
-    const bool occupied = std::ranges::any_of(written, [](const FileUse& output) {
-        return output_place(output.path).descriptor == STDOUT_FILENO;
-    });
-    std::fputs(result.report.full().c_str(), occupied ? stderr : stdout);
+    std::fputs(result.report.full().c_str(), take_standard_output(written) ? stderr : stdout);
 }
 
 void add_flags(CLI::App& sub, Flags& flags) {

@@ -1,5 +1,7 @@
 #include "fit_files.hpp"
 
+#include "parse.hpp"
+
 #include <batten/io/output_file.hpp>
 #include <batten/io/output_place.hpp>
 #include <batten/io/spline_file.hpp>
@@ -26,8 +28,7 @@ std::vector<FileUse> inputs_of(const FitFlags& flags) {
     std::vector<FileUse> inputs{{flags.points, "the points"}};
     const auto add = [&](const char* flag, const std::string& text,
                          std::initializer_list<std::string_view> words = {}) {
-        const bool list = text.find_first_not_of("0123456789,") == std::string::npos;
-        if (!list && std::ranges::count(words, std::string_view(text)) == 0)
+        if (!is_list(text) && std::ranges::count(words, std::string_view(text)) == 0)
             inputs.push_back({text, flag});
     };
     add("--weights", flags.weights);
@@ -63,7 +64,11 @@ void check_holds(const FitFlags& flags, const Samples& samples, const FitOptions
 }
 
 bool writes_standard_output(const FitFlags& flags) {
-    return std::ranges::any_of(outputs_of(flags), [](const FileUse& output) {
+    return take_standard_output(outputs_of(flags));
+}
+
+bool take_standard_output(std::span<const FileUse> outputs) {
+    return std::ranges::any_of(outputs, [](const FileUse& output) {
         return output_place(output.path).descriptor == STDOUT_FILENO;
     });
 }

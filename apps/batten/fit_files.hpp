@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fit_flags.hpp"
+#include <batten/io/output_place.hpp>
 
 namespace batten::command {
 
@@ -14,5 +15,8 @@ void check_holds(const FitFlags& flags, const Samples& samples, const FitOptions
 
 /// Whether an output goes to standard output, under whatever name.
 bool writes_standard_output(const FitFlags& flags);
+
+/// Whether one of the outputs is the standard output, so that words must go elsewhere.
+bool take_standard_output(std::span<const FileUse> outputs);
 
 } // namespace batten::command

@@ -70,9 +70,13 @@ double parse_number(std::string_view option, std::string_view text) {
     return value;
 }
 
+bool is_list(std::string_view text) {
+    return text.find_first_not_of("0123456789,") == std::string_view::npos;
+}
+
 std::vector<Index> index_list(std::string_view option, const std::string& text) {
     std::vector<double> numbers;
-    if (text.find_first_not_of("0123456789,") != std::string::npos) {
+    if (!is_list(text)) {
         if (extension(text).empty())
             throw InvalidInput(
                 fmt::format("{} {}: a list like 0,20,40 or a file is needed", option, text));

@@ -20,6 +20,9 @@ std::array<double, 2> parse_spacing(std::string_view text);
 /// One finite number; throws InvalidInput naming the option.
 double parse_number(std::string_view option, std::string_view text);
 
+/// Whether it is a list of whole numbers (empty: of none), and no file's name.
+bool is_list(std::string_view text);
+
 /// `0,20,40`, or the whole numbers of a file; throws InvalidInput naming the option.
 std::vector<Index> index_list(std::string_view option, const std::string& text);
 

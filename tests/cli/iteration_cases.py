@@ -58,6 +58,16 @@ class Cases(InFolder):
         self.assertIn(done.returncode, (0, 4), done.stderr)
         return [json.loads((self.folder / name).read_text()) for name in ("o.json", "s.json")]
 
+    def best_of_all(self, seed):
+        """Name, samples, arguments and the direct answer's control points: as they are, weighted, smoothed, closed."""
+        for name, points, arguments, _ in self.problems(seed):
+            np.savetxt(self.folder / "w.csv", np.random.default_rng(1).uniform(0.5, 3, points.size // points.shape[-1]), fmt="%.17g")
+            cases = [arguments, [*arguments, "--weights", "w.csv"], [*arguments, "--smooth", "1e-4"]]
+            if name == "curve":
+                cases.append(["-n", 15, "--closed"])
+            for case in cases:
+                yield name, points, case, np.array(self.run_fit(points, *case, "-m", "direct")[0]["control_points"])
+
     def problems(self, seed):
         """Name, samples, arguments, and the matrix of a spline's knots at the samples' parameters."""
         rng = np.random.default_rng(seed)

@@ -178,21 +178,12 @@ class MoreIterations(Cases):
                     self.assertLess(abs(ours - control).max(), 1e-9 * abs(control).max(), case)
 
     def test_the_limit_is_the_direct_answers(self):
-        for name, points, arguments, _ in self.problems(3):
-            count = points.size // points.shape[-1]
-            np.savetxt(self.folder / "w.csv", np.random.default_rng(1).uniform(0.5, 3, count), fmt="%.17g")
-            cases = [[], ["--weights", "w.csv"], ["--smooth", "1e-4"]]
-            if name == "curve":
-                cases.append(["--closed"])
-            for more in cases:
-                now = ["-n", 15] if "--closed" in more else arguments
-                best, _ = self.run_fit(points, *now, *more, "-m", "direct")
-                for method in EVERYWHERE:
-                    spline, summary = self.run_fit(points, *now, *more, "-m", method, *self.settings(method), "--stop-relative-gradient", 1e-13,
-                                                   "--max-iterations", 400000)
-                    off = abs(np.array(spline["control_points"]) - np.array(best["control_points"])).max()
-                    self.assertLess(off, 1e-9, (name, more, method))
-                    self.assertEqual(summary["settings"].get("setup_products", 0) > 0, method in ("pmlspia", "plspia"), method)
+        for name, points, arguments, best in self.best_of_all(3):
+            for method in EVERYWHERE:
+                spline, summary = self.run_fit(points, *arguments, "-m", method, *self.settings(method), "--stop-relative-gradient", 1e-13,
+                                               "--max-iterations", 400000)
+                self.assertLess(abs(np.array(spline["control_points"]) - best).max(), 1e-9, (name, arguments, method))
+                self.assertEqual(summary["settings"].get("setup_products", 0) > 0, method in ("pmlspia", "plspia"), method)
 
     def test_fairing_of_data_is_smoothing_weighed_otherwise(self):
         for name, points, arguments, _ in self.problems(4):

@@ -116,19 +116,10 @@ class Iterations(Cases):
             self.assertLess(abs(np.array(spline["control_points"]) - control).max(), 1e-9)
 
     def test_the_limit_is_the_direct_answers(self):
-        for name, points, arguments, _ in self.problems(3):
-            count = points.size // points.shape[-1]
-            np.savetxt(self.folder / "w.csv", np.random.default_rng(1).uniform(0.5, 3, count), fmt="%.17g")
-            cases = [[], ["--weights", "w.csv"], ["--smooth", "1e-4"]]
-            if name == "curve":
-                cases.append(["--closed"])
-            for more in cases:
-                arguments_now = ["-n", 15] if "--closed" in more else arguments
-                best, _ = self.run_fit(points, *arguments_now, *more, "-m", "direct")
-                for method in FORMULAS:
-                    spline, _ = self.run_fit(points, *arguments_now, *more, "-m", method, "--stop-relative-gradient", 1e-13, "--max-iterations", 200000)
-                    off = abs(np.array(spline["control_points"]) - np.array(best["control_points"])).max()
-                    self.assertLess(off, 1e-9, (name, more, method))
+        for name, points, arguments, best in self.best_of_all(3):
+            for method in FORMULAS:
+                spline, _ = self.run_fit(points, *arguments, "-m", method, "--stop-relative-gradient", 1e-13, "--max-iterations", 200000)
+                self.assertLess(abs(np.array(spline["control_points"]) - best).max(), 1e-9, (name, arguments, method))
 
     def test_control_points_without_samples_stay(self):
         t = np.r_[np.linspace(0, 0.4, 60), np.linspace(0.7, 1, 50)]

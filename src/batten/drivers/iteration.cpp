@@ -153,9 +153,7 @@ Course iterated(Method& method, Departure start, const std::vector<KnotVector>& 
     report.first_gradient_norm = summary.first_gradient_norm;
     report.observed_rate = summary.observed_rate;
     report.predicted_rate = method.predicted_rate();
-    report.settings = method.settings();
-    if (method.setup_products() > 0)
-        report.settings["setup_products"] = static_cast<double>(method.setup_products());
+    report.settings = method.account();
     if (const std::string note = method.note(); !note.empty()) report.notes.push_back(note);
     if (const std::string stopped = stop_of_turns(kept, course.control, closure); !stopped.empty())
         report.notes.push_back(stopped);

@@ -115,9 +115,7 @@ FairResult fair(const Spline& spline, const FairOptions& options) {
     } else {
         const auto method = make_method(report.method, system, options.settings);
         report.course = iterate(*method, moves, options.stop);
-        report.settings = method->settings();
-        if (method->setup_products() > 0)
-            report.settings["setup_products"] = static_cast<double>(method->setup_products());
+        report.settings = method->account();
     }
     report.energy_after = system.energy(moves);
     report.largest_move = largest_length(moves);

@@ -53,15 +53,20 @@ class Method {
     virtual bool rests() const { return false; }
     /// The weights in use, known after start().
     virtual Settings settings() const { return {}; }
+    /// Those and, where the spectrum took any, `setup_products`.
+    Settings account() const {
+        Settings result = settings();
+        if (setup_products_ > 0) result["setup_products"] = static_cast<double>(setup_products_);
+        return result;
+    }
     /// What the user should know of the problem, found at start(): a sentence, or nothing.
     virtual std::string note() const { return {}; }
     /// Predicted factor by which the error falls per iteration, 0 when the theory gives none.
     virtual double predicted_rate() const { return 0; }
-    /// Products with A^T D A, or solves in its place, that the spectrum took at start(): each costs
-    /// about a step; 0 where no eigenvalues are needed.
-    Index setup_products() const { return setup_products_; }
 
   protected:
+    /// Products with A^T D A, or solves in its place, that the spectrum took at start(): each costs
+    /// about a step; 0 where no eigenvalues are needed.
     Index setup_products_ = 0;
 };
 
