@@ -114,10 +114,9 @@ TEST(ChangMaDeng, as_many_constraints_as_control_points_leave_nothing_to_approxi
     const FitResult before = fit(glyph, options);
     options.shape.parameters = before.parameters;
     // as many equations as unknowns: the curve is the one through the exact samples
-    const reference::Matrix through =
-        reference::collocation(before.spline.axis(0), before.parameters.axes[0])(exact, Eigen::all)
-            .fullPivLu()
-            .solve(reference::matrix(glyph.points)(exact, Eigen::all));
+    const reference::Matrix through = reference::solve(
+        reference::collocation(before.spline.axis(0), before.parameters.axes[0])(exact, Eigen::all),
+        reference::matrix(glyph.points)(exact, Eigen::all));
     EXPECT_LT(reference::difference(through, before.spline.control_points()), 1e-9);
     PointSet moved(glyph.points);
     const PointSet noise = testing::random_points(577, 2, 3);

@@ -54,14 +54,12 @@ TEST(LinWangDong, the_limit_interpolates_and_local_pia_interpolates_its_part) {
     EXPECT_LT(reference::largest(deviations(all)), 1e-8);
     // each step leaves 1 - B of the errors at the samples: B is A on the control points that follow
     // samples, the first and the last of which are doubled at the ends
-    const Eigen::MatrixXd a =
-        reference::collocation(all.spline.axis(0), all.parameters.axes[0]).cast<double>();
+    const reference::Matrix a = reference::collocation(all.spline.axis(0), all.parameters.axes[0]);
     const Index m = a.rows();
-    Eigen::MatrixXd b = a.middleCols(1, m);
+    reference::Matrix b = a.middleCols(1, m);
     b.col(0) += a.col(0);
     b.col(m - 1) += a.col(m + 1);
-    const double radius =
-        (Eigen::MatrixXd::Identity(m, m) - b).eval().eigenvalues().cwiseAbs().maxCoeff();
+    const double radius = reference::spectral_radius(reference::Matrix::Identity(m, m) - b);
     EXPECT_NEAR(all.report.observed_rate, radius, 2e-2);
     EXPECT_NEAR(all.report.predicted_rate, radius,
                 2e-2); // power iteration on a matrix that is not symmetric

@@ -127,17 +127,19 @@ TEST(Literature, rank_deficient_peaks_with_four_holes) {
     const reference::Matrix q = reference::matrix(samples.points);
     const auto rms = [&](const PointSet& control) {
         return static_cast<double>(std::sqrt(
-            (q - a * reference::matrix(uncentred(control, system->centre()))).squaredNorm() /
+            (q - reference::product(a, reference::matrix(uncentred(control, system->centre()))))
+                .squaredNorm() /
             static_cast<reference::Long>(samples.size())));
     };
     // the minimum residual: a dense solution, the four undetermined directions held by a weight
     // that moves it by less than the last digit asked for
-    reference::Matrix gram = a.transpose() * a;
-    const reference::Matrix right = a.transpose() * q;
+    reference::Matrix gram = reference::transposed_product(a, a);
+    const reference::Matrix right = reference::transposed_product(a, q);
     gram.diagonal().array() += 1e-14L;
-    const reference::Matrix best = gram.ldlt().solve(right);
-    const double minimum = static_cast<double>(
-        std::sqrt((q - a * best).squaredNorm() / static_cast<reference::Long>(samples.size())));
+    const reference::Matrix best = reference::solve_definite(gram, right);
+    const double minimum =
+        static_cast<double>(std::sqrt((q - reference::product(a, best)).squaredNorm() /
+                                      static_cast<reference::Long>(samples.size())));
     PointSet control(400, 3);
     ConjugateGradients cg(*system);
     iterate(cg, control, {.max_iterations = 500, .relative_gradient = 0});

@@ -44,7 +44,7 @@ double least_rms(const Samples& samples, const FitResult& result) {
     reference::Long sum = 0;
     for (Index d = 0; d < samples.dim(); ++d) {
         const auto residual = [](const reference::Matrix& m, const reference::Matrix& q) {
-            return reference::Matrix(m * reference::least_squares(m, q));
+            return reference::product(m, reference::least_squares(m, q));
         };
         const reference::Matrix column = all.col(d);
         const reference::Matrix q = reference::Matrix(

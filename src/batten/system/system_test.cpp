@@ -65,7 +65,7 @@ TEST(OnePass, moments_stay_accurate_up_to_degree_9) {
         const auto t = random_parameters(2000, 3);
         const KnotVector k = knots_from_parameters(t, p, p + 12);
         const LongMatrix a = collocation(k, t);
-        const LongMatrix gram = a.transpose() * a;
+        const LongMatrix gram = reference::transposed_product(a, a);
         const auto system = assemble({k}, testing::sequence(random_points(2000, 1, 4)), {{t}, {}});
         const BandedMatrix& ours = *system->factors()[0];
         for (Index i = 0; i < ours.size(); ++i)
@@ -147,9 +147,10 @@ TEST(OnePass, cells_and_single_samples_give_one_matrix) {
             weighted.row(j) *= reference::Long(weights[static_cast<std::size_t>(j)]);
         LongMatrix away = reference::matrix(q);
         away.rowwise() -= Eigen::Matrix<reference::Long, 1, 2>(0.1, 0.2);
-        const LongMatrix moved = a * reference::matrix(x);
-        EXPECT_LT(reference::difference(weighted.transpose() * moved, y), 1e-11);
-        EXPECT_LT(reference::difference(weighted.transpose() * away, cells.rhs()), 1e-11);
+        const LongMatrix moved = reference::product(a, reference::matrix(x));
+        EXPECT_LT(reference::difference(reference::transposed_product(weighted, moved), y), 1e-11);
+        EXPECT_LT(reference::difference(reference::transposed_product(weighted, away), cells.rhs()),
+                  1e-11);
     }
 }
 
