@@ -162,7 +162,7 @@ class Iterations(Cases):
             flat = points.reshape(-1, points.shape[-1])
             flat = flat + 0.001 * np.random.default_rng(2).normal(size=flat.shape)
             best = np.linalg.norm(flat - matrix @ np.linalg.lstsq(matrix, flat, rcond=None)[0])
-            for method in ("lspia", "mlspia", "chebyshev", "nesterov", "nmlspia", "alspia"):
+            for method in ("lspia", "mlspia", "pmlspia", "chebyshev", "nesterov", "nmlspia", "alspia"):
                 spline, summary = self.run_fit(flat.reshape(points.shape), *arguments, "-m", method, "--max-iterations", 300, "--stop-relative-gradient", 0)
                 control = np.array(spline["control_points"]).reshape(-1, points.shape[-1])
                 self.assertLess(np.linalg.norm(flat - matrix @ control), (1.05 if method == "lspia" else 1.02) * best, (name, method))
