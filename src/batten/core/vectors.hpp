@@ -28,6 +28,11 @@ inline std::vector<double> difference(std::span<const double> a, std::span<const
     return result;
 }
 
+/// x *= factor.
+inline void scale(std::span<double> x, double factor) {
+    for (double& value : x) value *= factor;
+}
+
 /// y += factor * x over `count` numbers, often as few as a point has: then their number is known to
 /// the compiler.
 inline void add_scaled(double* y, double factor, const double* x, Index count) {

@@ -1,5 +1,7 @@
 #include <batten/fit/rescale.hpp>
 
+#include <batten/core/vectors.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,10 +9,6 @@
 namespace batten {
 
 namespace {
-
-void scale(std::vector<double>& values, double factor) {
-    for (double& x : values) x *= factor;
-}
 
 PointSet scaled(PointSet points, double factor) {
     scale(points.values(), factor);

@@ -1,5 +1,6 @@
 #include <batten/iterate/accelerated.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/iterate/methods.hpp>
 
 #include <algorithm>
@@ -14,10 +15,6 @@ ExtremeEigenvalues widened(const StepGradient& gradient) {
     const ExtremeEigenvalues& e = gradient.eigenvalues().values;
     const double tolerance = gradient.tolerance();
     return {e.largest * (1 + tolerance), e.smallest * (1 - tolerance)};
-}
-
-void scale(PointSet& x, double factor) {
-    for (double& value : x.values()) value *= factor;
 }
 
 } // namespace
@@ -41,17 +38,17 @@ const PointSet& Chebyshev::propose(const PointSet& control) {
     moves_ = gradient_.at(control);
     if (last_.empty()) {
         rho_ = radius_ / centre_;
-        scale(moves_, 1 / centre_);
+        scale(moves_.values(), 1 / centre_);
         return moves_;
     }
     // three-term recurrence: rho' = 1 / (2 centre / radius - rho), move' = rho' rho move + 2 rho' /
     // radius gradient
     if (!(radius_ > 0)) { // one eigenvalue only
-        scale(moves_, 1 / centre_);
+        scale(moves_.values(), 1 / centre_);
         return moves_;
     }
     const double next = 1 / (2 * centre_ / radius_ - rho_);
-    scale(moves_, 2 * next / radius_);
+    scale(moves_.values(), 2 * next / radius_);
     add_scaled(moves_, next * rho_, last_);
     rho_ = next;
     return moves_;
@@ -75,7 +72,7 @@ const PointSet& Nesterov::propose(const PointSet& control) {
     moves_ = gradient_.at(control);
     // the gradient ahead, at y = P + momentum * (last move), is linear in the move
     if (!last_.empty()) add_scaled(moves_, -momentum_, gradient_.image(last_));
-    scale(moves_, step_);
+    scale(moves_.values(), step_);
     if (!last_.empty()) add_scaled(moves_, momentum_, last_);
     return moves_;
 }
@@ -107,7 +104,7 @@ const PointSet& BarzilaiBorwein::propose(const PointSet& control) {
            step_ * curvature > 1e-12 * square)
         step_ /= 2;
     moves_ = gradient_;
-    scale(moves_, step_);
+    scale(moves_.values(), step_);
     return moves_;
 }
 

@@ -1,5 +1,6 @@
 #include <batten/iterate/alspia.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/iterate/methods.hpp>
 
 #include <cmath>
@@ -42,7 +43,7 @@ double Alspia::factor() const {
 const PointSet& Alspia::propose(const PointSet& control) {
     moves_ = gradient_.at(control);
     const double step = factor();
-    for (double& x : moves_.values()) x *= step;
+    scale(moves_.values(), step);
     return moves_;
 }
 

@@ -1,5 +1,7 @@
 #include <batten/iterate/conjugate_gradients.hpp>
 
+#include <batten/core/vectors.hpp>
+
 namespace batten {
 
 ConjugateGradients::ConjugateGradients(const NormalSystem& system, Preconditioner preconditioner)
@@ -24,7 +26,7 @@ const PointSet& ConjugateGradients::propose(const PointSet& control) {
     const double curvature = inner_product(direction_, image_);
     step_ = curvature > 0 ? energy_ / curvature : 0;
     moves_ = direction_;
-    for (double& x : moves_.values()) x *= step_;
+    scale(moves_.values(), step_);
     fresh_ = false;
     return moves_;
 }

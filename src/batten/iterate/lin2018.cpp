@@ -1,5 +1,6 @@
 #include <batten/iterate/lin2018.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/system/row_sums.hpp>
 
 #include <algorithm>
@@ -23,8 +24,7 @@ PointSet reached_gradient(const NormalSystem& system, const PointSet& control,
 }
 
 void scale_rows(PointSet& rows, const std::vector<double>& factors) {
-    for (Index i = 0; i < rows.size(); ++i)
-        for (double& x : rows[i]) x *= factors[static_cast<std::size_t>(i)];
+    for (Index i = 0; i < rows.size(); ++i) scale(rows[i], factors[static_cast<std::size_t>(i)]);
 }
 
 void Lin2018::start(PointSet&) {

@@ -1,5 +1,6 @@
 #include <batten/iterate/lspia.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/iterate/methods.hpp>
 
 #include <algorithm>
@@ -31,7 +32,7 @@ void Lspia::start(PointSet&) {
 
 const PointSet& Lspia::propose(const PointSet& control) {
     moves_ = gradient_.at(control);
-    for (double& x : moves_.values()) x *= mu_;
+    scale(moves_.values(), mu_);
     return moves_;
 }
 

@@ -1,5 +1,6 @@
 #include <batten/iterate/mlspia.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/iterate/methods.hpp>
 
 #include <algorithm>
@@ -82,12 +83,12 @@ void Mlspia::start(PointSet& control) {
     PointSet before = control;
     add_scaled(before, -1.0, last_);
     last_delta_ = gradient_.at(before);
-    for (double& x : last_delta_.values()) x *= nu_;
+    scale(last_delta_.values(), nu_);
 }
 
 const PointSet& Mlspia::propose(const PointSet& control) {
     delta_ = gradient_.at(control);
-    for (double& x : delta_.values()) x *= nu_;
+    scale(delta_.values(), nu_);
     moves_ = delta_;
     if (!last_.empty()) {
         for (std::size_t k = 0; k < moves_.values().size(); ++k)
@@ -96,9 +97,9 @@ const PointSet& Mlspia::propose(const PointSet& control) {
     } else if (!first_.empty()) {
         moves_ = first_;
         gradient_.scale(moves_);
-        for (double& x : moves_.values()) x *= nu_;
+        scale(moves_.values(), nu_);
     } else {
-        for (double& x : moves_.values()) x *= given_.lambda.value_or(omega_);
+        scale(moves_.values(), given_.lambda.value_or(omega_));
     }
     return moves_;
 }

@@ -1,5 +1,6 @@
 #include <batten/iterate/pia.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/iterate/methods.hpp>
 
 #include <algorithm>
@@ -101,7 +102,7 @@ const PointSet& Pia::propose(const PointSet& control) {
     keep_chosen(means_);
     norm_ = frobenius_norm(means_);
     moves_ = means_;
-    for (double& x : moves_.values()) x *= weight_;
+    scale(moves_.values(), weight_);
     return moves_;
 }
 

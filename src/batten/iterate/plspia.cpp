@@ -1,5 +1,6 @@
 #include <batten/iterate/plspia.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/solve/working_eigenvalues.hpp>
 
@@ -77,7 +78,7 @@ const PointSet& Plspia::propose(const PointSet& control) {
     moves_ = system_.gradient(control);
     norm_ = frobenius_norm(moves_);
     preconditioning_.apply(moves_);
-    for (double& x : moves_.values()) x *= factor_;
+    scale(moves_.values(), factor_);
     return moves_;
 }
 

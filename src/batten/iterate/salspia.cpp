@@ -1,5 +1,6 @@
 #include <batten/iterate/salspia.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/system/row_sums.hpp>
 
@@ -40,7 +41,7 @@ const PointSet& Salspia::propose(const PointSet& control) {
     rho_ = inner_product(gradient_, gradient_);
     step_ = step_ == 0 ? 1 / bound_ : searched(trial(inner_product(last_gradient_, gradient_)));
     moves_ = gradient_;
-    for (double& x : moves_.values()) x *= step_;
+    scale(moves_.values(), step_);
     return moves_;
 }
 

@@ -1,5 +1,6 @@
 #include <batten/search/curve_closest.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/search/curve_knots.hpp>
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace batten {
 
 CurveTrial rescaled(CurveTrial trial, double looser) {
     trial.worst *= looser;
-    for (double& r : trial.ratio) r *= looser;
+    scale(trial.ratio, looser);
     return trial;
 }
 
@@ -26,7 +27,7 @@ CurveTrial rescaled(CurveTrial trial, const std::vector<double>& before,
 
 BetweenSamples check_reached(const CurveTask& task, const CurveTrial& trial) {
     std::vector<double> reached = task.tolerance;
-    for (double& t : reached) t *= std::max(1.0, trial.worst);
+    scale(reached, std::max(1.0, trial.worst));
     return check_between(spline_of(trial), task.samples.points, trial.parameters, reached);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <batten/core/vectors.hpp>
 #include <batten/problem/options.hpp>
 #include <batten/spline/spline.hpp>
 #include <batten/system/constraints.hpp>
@@ -55,7 +56,7 @@ inline double tightest(const CurveTask& task) {
 
 /// The task with its tolerances times a factor.
 inline CurveTask with_tolerances(CurveTask task, double factor) {
-    for (double& t : task.tolerance) t *= factor;
+    scale(task.tolerance, factor);
     return task;
 }
 

@@ -1,5 +1,6 @@
 #include <batten/search/grid_sizes.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/search/grid_trials.hpp>
 
 #include <batten/basis/place_knots.hpp>
@@ -157,7 +158,7 @@ std::vector<Index> least_size(const GridTask& task) {
 
 BetweenSamples check_reached(const GridTask& task, const Spline& spline, double worst) {
     std::vector<double> reached = task.tolerance;
-    for (double& t : reached) t *= std::max(1.0, worst);
+    scale(reached, std::max(1.0, worst));
     return check_between_grid(spline, task.samples, task.parameters, reached);
 }
 

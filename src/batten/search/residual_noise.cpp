@@ -117,7 +117,7 @@ Residuals whole_and_across(const KnotVector& knots, const Points& q, std::vector
         result.across = std::move(left);
     }
     const auto dim = static_cast<double>(q.dim());
-    for (double& x : result.across.values()) x *= std::sqrt(dim / (dim - 1));
+    scale(result.across.values(), std::sqrt(dim / (dim - 1)));
     result.uneven = 2 * frobenius_norm(result.across) < frobenius_norm(result.whole);
     return result;
 }

@@ -1,5 +1,7 @@
 #include <batten/shape/limits.hpp>
 
+#include <batten/core/vectors.hpp>
+
 namespace batten {
 
 void keep_turns(const PointSet& polygon, PointSet& moves, Closure closure, double threshold,
@@ -28,7 +30,7 @@ void keep_turns(const PointSet& polygon, PointSet& moves, Closure closure, doubl
         if (here) held_by = here;
         (here ? bad : good) = middle;
     }
-    for (double& x : moves.values()) x *= good;
+    scale(moves.values(), good);
     if (kept != nullptr) *kept = {kept->sum + good, good, kept->steps + 1, held_by};
 }
 

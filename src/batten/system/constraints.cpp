@@ -43,7 +43,7 @@ Constraints Constraints::with_lengths(std::span<const double> lengths) const {
     Constraints result = *this;
     result.directions_.clear();
     for (std::size_t k = 0; k < directions_.size(); ++k)
-        for (double& x : result.values_[directions_[k]]) x *= lengths[k];
+        scale(result.values_[directions_[k]], lengths[k]);
     return result;
 }
 
@@ -53,9 +53,9 @@ Constraints Constraints::balanced() const {
         if (is_position(static_cast<Index>(k))) continue;
         double square = 0;
         for (const Entry& entry : rows_[k]) square += entry.value * entry.value;
-        const double scale = 1 / std::sqrt(square);
-        for (Entry& entry : result.rows_[k]) entry.value *= scale;
-        for (double& x : result.values_[static_cast<Index>(k)]) x *= scale;
+        const double factor = 1 / std::sqrt(square);
+        for (Entry& entry : result.rows_[k]) entry.value *= factor;
+        scale(result.values_[static_cast<Index>(k)], factor);
     }
     return result;
 }
