@@ -15,17 +15,12 @@ namespace {
 ExtremeEigenvalues preconditioned_extremes(const NormalSystem& system,
                                            const Preconditioning& preconditioning,
                                            double tolerance) {
-    PointSet image(system.size(), 1);
-    const VectorOperator forward = [&](const std::vector<double>& x, std::vector<double>& y) {
-        system.apply(PointSet(x, 1), image);
-        y = image.values();
-    };
     const VectorOperator inverse = [&](const std::vector<double>& x, std::vector<double>& y) {
         PointSet solved(x, 1);
         preconditioning.apply(solved);
         y = solved.values();
     };
-    return lanczos(forward, system.size(), tolerance, SpectrumEnds::both, inverse);
+    return lanczos(operator_of(system), system.size(), tolerance, SpectrumEnds::both, inverse);
 }
 
 /// Whether no control point is without samples or hardly reached by any.

@@ -90,6 +90,13 @@ Ritz ritz(const Vector& alpha, const Vector& beta, double tolerance, SpectrumEnd
 
 } // namespace
 
+VectorOperator operator_of(const NormalSystem& system) {
+    return [&system, image = PointSet(system.size(), 1)](const Vector& x, Vector& y) mutable {
+        system.apply(PointSet(x, 1), image);
+        y = image.values();
+    };
+}
+
 ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tolerance,
                            SpectrumEnds ends, const VectorOperator& preconditioner) {
     constexpr Index most_steps = 600;
@@ -175,16 +182,7 @@ ExtremeEigenvalues extreme_eigenvalues(const BandedMatrix& m, double tolerance) 
 
 ExtremeEigenvalues extreme_eigenvalues(const NormalSystem& system, double tolerance) {
     const auto factors = system.factors();
-    if (factors.empty()) {
-        PointSet x(system.size(), 1);
-        PointSet y(system.size(), 1);
-        const VectorOperator whole = [&](const Vector& in, Vector& out) {
-            x.values() = in;
-            system.apply(x, y);
-            out = y.values();
-        };
-        return lanczos(whole, system.size(), tolerance);
-    }
+    if (factors.empty()) return lanczos(operator_of(system), system.size(), tolerance);
     ExtremeEigenvalues product{1, 1, 0};
     for (const BandedMatrix* gram : factors) {
         const ExtremeEigenvalues e =

@@ -16,6 +16,9 @@ struct ExtremeEigenvalues {
 /// y = M x for vectors of the matrix's size.
 using VectorOperator = std::function<void(const std::vector<double>& x, std::vector<double>& y)>;
 
+/// x -> A^T D A x, for a system that outlives it.
+VectorOperator operator_of(const NormalSystem& system);
+
 /// Which ends of the spectrum must be settled before the iteration may end.
 enum class SpectrumEnds { both, largest };
 

@@ -63,14 +63,13 @@ ExtremeEigenvalues row_scaled_extremes(const NormalSystem& system, const std::ve
     const auto factors = system.factors();
     if (factors.empty()) {
         const std::vector<double> root = inverse_roots(sums);
-        PointSet x(system.size(), 1);
-        PointSet y(system.size(), 1);
-        const VectorOperator whole = [&](const std::vector<double>& in, std::vector<double>& out) {
-            for (std::size_t i = 0; i < in.size(); ++i) x.values()[i] = root[i] * in[i];
-            system.apply(x, y);
-            for (std::size_t i = 0; i < in.size(); ++i) out[i] = root[i] * y.values()[i];
+        const VectorOperator plain = operator_of(system);
+        const VectorOperator scaled = [&](std::vector<double> in, std::vector<double>& out) {
+            for (std::size_t i = 0; i < in.size(); ++i) in[i] *= root[i];
+            plain(in, out);
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] *= root[i];
         };
-        return lanczos(whole, system.size(), tolerance);
+        return lanczos(scaled, system.size(), tolerance);
     }
     ExtremeEigenvalues product{1, 1};
     for (const BandedMatrix* gram : factors) {
