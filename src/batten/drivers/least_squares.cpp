@@ -14,6 +14,7 @@
 #include <batten/solve/factor_search.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/solve/keep_shape.hpp>
+#include <batten/solve/working_eigenvalues.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -32,11 +33,9 @@ struct Equations {
     double lambda = 0; ///< factor of the roughness in the system
 };
 
-/// Whether every control point is determined, and more than hardly reached by the samples.
+/// Whether the samples reach every control point and leave no direction open.
 bool determined(const NormalSystem& system) {
-    const std::vector<double> diagonal = system.diagonal();
-    const auto [least, most] = std::ranges::minmax(diagonal);
-    if (hardly_reached(least, most)) return false;
+    if (!reaches_all(system)) return false;
     try {
         factorize(system);
     } catch (const SolverError&) {

@@ -23,13 +23,6 @@ ExtremeEigenvalues preconditioned_extremes(const NormalSystem& system,
     return lanczos(operator_of(system), system.size(), tolerance, SpectrumEnds::both, inverse);
 }
 
-/// Whether no control point is without samples or hardly reached by any.
-bool reaches_all(const NormalSystem& system) {
-    const std::vector<double> diagonal = system.diagonal();
-    const auto [least, most] = std::ranges::minmax(diagonal);
-    return !hardly_reached(least, most);
-}
-
 } // namespace
 
 Plspia::Plspia(const NormalSystem& system, int band, std::optional<double> relaxation,

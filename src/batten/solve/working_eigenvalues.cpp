@@ -90,6 +90,12 @@ ExtremeEigenvalues row_scaled_extremes(const NormalSystem& system, const std::ve
 
 } // namespace
 
+bool reaches_all(const NormalSystem& system) {
+    const std::vector<double> diagonal = system.diagonal();
+    const auto [least, most] = std::ranges::minmax(diagonal);
+    return !hardly_reached(least, most);
+}
+
 WorkingEigenvalues working_eigenvalues(const NormalSystem& system, double tolerance) {
     constexpr double too_small = 1e-7;
     constexpr double working = 1e-6;

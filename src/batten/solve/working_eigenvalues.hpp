@@ -10,6 +10,10 @@ namespace batten {
 /// steps by eigenvalues would all wait for.
 inline constexpr double least_determined = 1e-5;
 
+/// Whether the samples more than hardly reach every control point; they may leave directions open
+/// still.
+bool reaches_all(const NormalSystem& system);
+
 /// Eigenvalues to choose step factors by.
 struct WorkingEigenvalues {
     ExtremeEigenvalues values;
