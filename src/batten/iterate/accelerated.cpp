@@ -3,7 +3,6 @@
 #include <batten/core/vectors.hpp>
 #include <batten/iterate/methods.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace batten {
@@ -78,31 +77,24 @@ const PointSet& Nesterov::propose(const PointSet& control) {
 }
 
 BarzilaiBorwein::BarzilaiBorwein(const NormalSystem& system, int memory)
-    : system_(system), memory_(memory) {}
+    : system_(system), search_(memory) {}
 
 void BarzilaiBorwein::start(PointSet&) {
-    check_setting("barzilai-borwein", "memory", memory_);
+    check_setting("barzilai-borwein", "memory", search_.memory());
     image_ = PointSet(system_.size(), system_.dim());
     moves_image_ = image_;
-    energy_ = 0;
-    energies_ = {0};
+    search_.start();
     step_ = 0;
 }
 
 const PointSet& BarzilaiBorwein::propose(const PointSet& control) {
-    constexpr double sufficient = 1e-4;
     gradient_ = system_.gradient(control);
     const double square = inner_product(gradient_, gradient_);
     norm_ = std::sqrt(square);
     system_.apply(gradient_, image_);
     const double curvature = inner_product(gradient_, image_);
     if (step_ == 0) step_ = curvature > 0 ? square / curvature : 0;
-    // energy differences through the gradient: E(P + a g) - E(P) = -2 a |g|^2 + a^2 <g, N g>
-    const double allowed = *std::max_element(energies_.begin(), energies_.end());
-    while (energy_ - 2 * step_ * square + step_ * step_ * curvature >
-               allowed - sufficient * step_ * square &&
-           step_ * curvature > 1e-12 * square)
-        step_ /= 2;
+    step_ = search_.searched(step_, square, curvature);
     moves_ = gradient_;
     scale(moves_.values(), step_);
     return moves_;
@@ -112,9 +104,7 @@ void BarzilaiBorwein::accept(const PointSet& moves) {
     system_.apply(moves, moves_image_);
     const double length = inner_product(moves, moves);
     const double curvature = inner_product(moves, moves_image_);
-    energy_ += curvature - 2 * inner_product(moves, gradient_);
-    energies_.push_back(energy_);
-    if (static_cast<int>(energies_.size()) > memory_) energies_.pop_front();
+    search_.moved(curvature / 2 - inner_product(moves, gradient_));
     step_ = curvature > 0 ? length / curvature : 0;
 }
 

@@ -1,8 +1,7 @@
 #pragma once
 
+#include <batten/iterate/nonmonotone_search.hpp>
 #include <batten/iterate/step_gradient.hpp>
-
-#include <deque>
 
 namespace batten {
 
@@ -61,7 +60,7 @@ class Nesterov : public Method {
 };
 
 /// LSPIA with Barzilai-Borwein steps [BarzilaiBorwein1988] and the non-monotone search of
-/// [GrippoLamparielloLucidi1986] over the last `memory` energies. Needs no eigenvalues.
+/// [GrippoLamparielloLucidi1986] over the last `memory` values. Needs no eigenvalues.
 class BarzilaiBorwein : public Method {
   public:
     explicit BarzilaiBorwein(const NormalSystem& system, int memory = 10);
@@ -70,15 +69,15 @@ class BarzilaiBorwein : public Method {
     const PointSet& propose(const PointSet& control) override;
     void accept(const PointSet& moves) override;
     double gradient_norm() const override { return norm_; }
-    Settings settings() const override { return {{"memory", static_cast<double>(memory_)}}; }
+    Settings settings() const override {
+        return {{"memory", static_cast<double>(search_.memory())}};
+    }
 
   private:
     const NormalSystem& system_;
-    int memory_;
-    double step_ = 0;   // of the next move
-    double energy_ = 0; // relative to the start
+    NonmonotoneSearch search_;
+    double step_ = 0; // of the next move
     double norm_ = 0;
-    std::deque<double> energies_;
     PointSet gradient_;
     PointSet image_; // A^T D A gradient
     PointSet moves_;

@@ -24,16 +24,14 @@ double blended(double w, double rho, double b, double c) {
 } // namespace
 
 Salspia::Salspia(const NormalSystem& system, int memory, SpectralStep kind)
-    : system_(system), memory_(memory), kind_(kind) {}
+    : system_(system), search_(memory), kind_(kind) {}
 
 void Salspia::start(PointSet&) {
-    check_setting("salspia", "memory", memory_);
+    check_setting("salspia", "memory", search_.memory());
     bound_ = std::ranges::max(row_sums(system_));
     image_ = PointSet(system_.size(), system_.dim());
     step_ = 0;
-    functional_ = 0;
-    functionals_ = {0};
-    halvings_ = 0;
+    search_.start();
 }
 
 const PointSet& Salspia::propose(const PointSet& control) {
@@ -57,27 +55,15 @@ double Salspia::trial(double zeta) const {
     return 1 - place <= nearly ? b / c : blended(1 - place, last_rho_, b, c);
 }
 
-/// Halved until the functional is enough below the largest of the last ones
-/// [GrippoLamparielloLucidi1986].
 double Salspia::searched(double step) {
-    constexpr double enough = 1e-4;
-    constexpr int most_halvings = 101;
     system_.apply(gradient_, image_);
-    const double curvature = inner_product(gradient_, image_);
-    const double allowed = std::ranges::max(functionals_);
-    for (int k = 0; k < most_halvings; ++k, ++halvings_, step /= 2)
-        if (functional_ - step * rho_ + step * step / 2 * curvature <=
-            allowed - enough * step * rho_)
-            break;
-    return step;
+    return search_.searched(step, rho_, inner_product(gradient_, image_));
 }
 
 void Salspia::accept(const PointSet& moves) {
     const bool as_proposed = moves.values() == moves_.values();
     system_.apply(moves, image_);
-    functional_ += inner_product(moves, image_) / 2 - inner_product(moves, gradient_);
-    functionals_.push_back(functional_);
-    if (static_cast<int>(functionals_.size()) > memory_) functionals_.pop_front();
+    search_.moved(inner_product(moves, image_) / 2 - inner_product(moves, gradient_));
     last_rho_ = rho_;
     std::swap(last_gradient_, gradient_);
     if (!as_proposed) step_ = 0; // a limited move says nothing of the spectrum
@@ -88,9 +74,9 @@ double Salspia::gradient_norm() const {
 }
 
 Settings Salspia::settings() const {
-    return {{"memory", static_cast<double>(memory_)},
+    return {{"memory", static_cast<double>(search_.memory())},
             {"step", step_},
-            {"halvings", static_cast<double>(halvings_)}};
+            {"halvings", static_cast<double>(search_.halvings())}};
 }
 
 } // namespace batten

@@ -1,9 +1,8 @@
 #pragma once
 
 #include <batten/iterate/method.hpp>
+#include <batten/iterate/nonmonotone_search.hpp>
 #include <batten/system/normal_system.hpp>
-
-#include <deque>
 
 namespace batten {
 
@@ -34,15 +33,12 @@ class Salspia : public Method {
     double searched(double step);
 
     const NormalSystem& system_;
-    int memory_;
+    NonmonotoneSearch search_;
     SpectralStep kind_;
     double bound_ = 0; ///< C_H, at least the largest eigenvalue
     double step_ = 0;  ///< alpha, the last one taken; 0: none to go by
     double rho_ = 0;   ///< <r, r>
     double last_rho_ = 0;
-    double functional_ = 0;          ///< Phi less that of P^0
-    std::deque<double> functionals_; ///< the last ones
-    int halvings_ = 0;
     PointSet gradient_; ///< r
     PointSet last_gradient_;
     PointSet image_; ///< H r
