@@ -73,7 +73,7 @@ std::vector<Index> moving_points(const FairingSystem& system, const FairOptions&
 }
 
 std::string method_of(const FairOptions& options, const FairingSystem& system) {
-    if (options.method == "fairing-pia" || options.method == "monotone-lspia")
+    if (method_entry(options.method).needs_samples)
         throw InvalidInput(fmt::format(
             "fair: method {} is for samples; direct, lin2018, cg, ... can", options.method));
     if (options.method != "auto") return options.method;

@@ -20,16 +20,107 @@
 
 namespace batten {
 
+struct ChosenSettings {
+    const MethodEntry& entry;
+    const Settings& given;
+
+    std::optional<double> stated(const char* name) const { return setting(given, name); }
+    double number(const char* name) const { return setting(entry, given, name); }
+    template <class Whole = int>
+    Whole whole(const char* name) const {
+        return static_cast<Whole>(number(name));
+    }
+    double accuracy() const { return number("eigenvalue_tolerance"); }
+    std::optional<RowSums> row_sums() const { return stated_row_sums(given); }
+    RowSums row_sums_by_need() const { return row_sums().value_or(RowSums::where_ill_determined); }
+};
+
 namespace {
 
 using namespace method_settings;
+using Made = std::unique_ptr<Method>;
+using Chosen = ChosenSettings;
+
+Made lspia(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<Lspia>(system, s.stated("mu"), s.accuracy(), s.row_sums());
+}
+
+Made mlspia(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<Mlspia>(
+        system,
+        MlspiaWeights{s.stated("omega"), s.stated("gamma"), s.stated("nu"), s.stated("lambda")},
+        s.accuracy(), s.row_sums());
+}
+
+Made pmlspia(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<Mlspia>(system, MlspiaWeights{}, s.accuracy(), s.row_sums(), "pmlspia");
+}
+
+Made conjugate_gradients(const NormalSystem& system, const Chosen& s) {
+    const bool plain = s.number("plain") == 1;
+    const bool diagonal = s.number("diagonal") == 1;
+    if (plain && diagonal)
+        throw InvalidInput("settings plain = 1 and diagonal = 1 of method cg: one of them at most");
+    return std::make_unique<ConjugateGradients>(system, plain      ? Preconditioner::none
+                                                        : diagonal ? Preconditioner::diagonal
+                                                                   : Preconditioner::axes);
+}
+
+Made chebyshev(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<Chebyshev>(system, s.accuracy(), s.row_sums_by_need());
+}
+
+/// nesterov and nmlspia.
+Made nesterov(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<Nesterov>(system, s.accuracy(), s.entry.name, s.row_sums_by_need());
+}
+
+Made barzilai_borwein(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<BarzilaiBorwein>(system, s.whole("memory"));
+}
+
+Made salspia(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<Salspia>(system, s.whole("memory"), s.whole<SpectralStep>("step"));
+}
+
+Made alspia(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<Alspia>(system, s.whole<Index>("cycle"), s.accuracy(),
+                                    s.row_sums_by_need());
+}
+
+Made lin2018(const NormalSystem& system, const Chosen&) {
+    return std::make_unique<Lin2018>(system);
+}
+
+Made plspia(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<Plspia>(system, s.whole("band"), s.stated("relaxation"), s.accuracy());
+}
+
+Made anderson(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<Anderson>(system, s.whole("window"));
+}
+
+Made rpia(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<Rpia>(system, static_cast<Index>(s.stated("block").value_or(0)),
+                                  s.whole<std::uint64_t>("seed"));
+}
+
+Made fairing_pia(const NormalSystem& system, const Chosen& s) {
+    return std::make_unique<FairingPia>(system, s.number("weight"), s.whole("order"));
+}
+
+Made monotone_lspia(const NormalSystem& system, const Chosen& s) {
+    MonotoneLspia::Choice choice{.mu = s.stated("mu"), .direction = s.whole("direction")};
+    if (const auto one = s.stated("coordinate")) choice.coordinate = static_cast<Index>(*one);
+    return std::make_unique<MonotoneLspia>(system, choice);
+}
 
 constexpr MethodEntry table[]{
     {"auto", "the fastest that answers the question", "", {}},
     {"search", "the fewest control points within a tolerance", "", {}},
     {"direct", "banded Cholesky of the normal equations, axis by axis", "", {}},
-    {"lspia", "least-squares PIA", "Deng, Lin 2014", lspia_settings},
-    {"mlspia", "least-squares PIA with memory", "Huang, Wang 2020", mlspia_settings},
+    {"lspia", "least-squares PIA", "Deng, Lin 2014", lspia_settings, lspia},
+    {"mlspia", "least-squares PIA with memory", "Huang, Wang 2020", mlspia_settings, mlspia},
     {"clspia", "LSPIA with Lagrange multipliers: exact at the interpolated samples",
      "Chang, Ma, Deng 2023", clspia_settings},
     {"pia", "progressive-iterative approximation: interpolates every sample",
@@ -37,31 +128,35 @@ constexpr MethodEntry table[]{
     {"epia", "PIA with groups of samples, knots added where the error is", "Lin, Zhang 2011",
      epia_settings},
     {"cg", "conjugate gradients, preconditioned axis by axis on clouds, by the diagonal elsewhere",
-     "Hestenes, Stiefel 1952", cg_settings},
-    {"chebyshev", "LSPIA with Chebyshev steps", "Golub, Varga 1961", eigenvalues_only},
-    {"nesterov", "LSPIA with Nesterov's momentum", "Nesterov 2004", eigenvalues_only},
+     "Hestenes, Stiefel 1952", cg_settings, conjugate_gradients},
+    {"chebyshev", "LSPIA with Chebyshev steps", "Golub, Varga 1961", eigenvalues_only, chebyshev},
+    {"nesterov", "LSPIA with Nesterov's momentum", "Nesterov 2004", eigenvalues_only, nesterov},
     {"barzilai-borwein", "LSPIA with Barzilai-Borwein steps and a non-monotone search",
-     "Barzilai, Borwein 1988; Grippo, Lampariello, Lucidi 1986", barzilai_borwein_settings},
+     "Barzilai, Borwein 1988; Grippo, Lampariello, Lucidi 1986", barzilai_borwein_settings,
+     barzilai_borwein},
     {"salspia", "LSPIA with steps that adapt to the spectrum, without eigenvalues", "Peng, Li 2026",
-     salspia_settings},
-    {"alspia", "LSPIA with one over Chebyshev roots as steps", "Wu, Liu 2024", alspia_settings},
-    {"nmlspia", "LSPIA with Nesterov's momentum", "Liu, Wu, Li, Hu 2024", eigenvalues_only},
+     salspia_settings, salspia},
+    {"alspia", "LSPIA with one over Chebyshev roots as steps", "Wu, Liu 2024", alspia_settings,
+     alspia},
+    {"nmlspia", "LSPIA with Nesterov's momentum", "Liu, Wu, Li, Hu 2024", eigenvalues_only,
+     nesterov},
     {"lin2018",
      "LSPIA for singular systems: a step of each control point's own",
      "Lin, Cao, Zhang 2018",
-     {}},
+     {},
+     lin2018},
     {"plspia", "LSPIA preconditioned by compensated bands, of clouds by the axes' product",
-     "Liu, Liu 2020", plspia_settings},
+     "Liu, Liu 2020", plspia_settings, plspia},
     {"anderson", "LSPIA with each control point's own step, the last moves combined",
-     "Walker, Ni 2011", anderson_settings},
+     "Walker, Ni 2011", anderson_settings, anderson},
     {"pmlspia", "LSPIA with Polyak's momentum", "Polyak 1964; Liu, Wu, Li, Hu 2024",
-     eigenvalues_only},
+     eigenvalues_only, pmlspia},
     {"rpia", "LSPIA of a block of control points at a time, drawn at random", "Wu, Liu 2022",
-     rpia_settings},
+     rpia_settings, rpia},
     {"fairing-pia", "lin2018 with roughness, both by one weight", "Jiang, Lin 2022",
-     fairing_settings},
+     fairing_settings, fairing_pia, true},
     {"monotone-lspia", "LSPIA projected onto monotone control points", "Li, Che 2026",
-     monotone_settings},
+     monotone_settings, monotone_lspia, true},
 };
 
 bool iterates(const MethodEntry& entry) {
@@ -74,40 +169,6 @@ const MethodSetting* find(const MethodEntry& entry, std::string_view name) {
     if (own != entry.settings.end()) return &*own;
     const auto shape = std::ranges::find(of_kept_shape, name, &MethodSetting::name);
     return iterates(entry) && shape != std::end(of_kept_shape) ? shape : nullptr;
-}
-
-Preconditioner preconditioner(const MethodEntry& entry, const Settings& settings) {
-    const bool plain = setting(entry, settings, "plain") == 1;
-    const bool diagonal = setting(entry, settings, "diagonal") == 1;
-    if (plain && diagonal)
-        throw InvalidInput("settings plain = 1 and diagonal = 1 of method cg: one of them at most");
-    return plain      ? Preconditioner::none
-           : diagonal ? Preconditioner::diagonal
-                      : Preconditioner::axes;
-}
-
-/// make_method for those at the end of the table; null for all others.
-std::unique_ptr<Method> make_newer_method(const MethodEntry& entry, const NormalSystem& system,
-                                          const Settings& settings) {
-    const auto given = [&](const char* of) { return setting(settings, of); };
-    const auto number = [&](const char* of) { return setting(entry, settings, of); };
-    const auto whole = [&](const char* of) { return static_cast<int>(number(of)); };
-    if (entry.name == "plspia")
-        return std::make_unique<Plspia>(system, whole("band"), given("relaxation"),
-                                        number("eigenvalue_tolerance"));
-    if (entry.name == "anderson") return std::make_unique<Anderson>(system, whole("window"));
-    if (entry.name == "pmlspia")
-        return std::make_unique<Mlspia>(system, MlspiaWeights{}, number("eigenvalue_tolerance"),
-                                        stated_row_sums(settings), "pmlspia");
-    if (entry.name == "rpia")
-        return std::make_unique<Rpia>(system, static_cast<Index>(given("block").value_or(0)),
-                                      static_cast<std::uint64_t>(number("seed")));
-    if (entry.name == "fairing-pia")
-        return std::make_unique<FairingPia>(system, number("weight"), whole("order"));
-    if (entry.name != "monotone-lspia") return nullptr;
-    MonotoneLspia::Choice choice{.mu = given("mu"), .direction = whole("direction")};
-    if (const auto one = given("coordinate")) choice.coordinate = static_cast<Index>(*one);
-    return std::make_unique<MonotoneLspia>(system, choice);
 }
 
 } // namespace
@@ -167,31 +228,7 @@ std::unique_ptr<Method> make_method(std::string_view name, const NormalSystem& s
                                     const Settings& settings) {
     const MethodEntry& entry = method_entry(name);
     check_settings(entry, settings);
-    const auto given = [&](const char* of) { return setting(settings, of); };
-    const auto number = [&](const char* of) { return setting(entry, settings, of); };
-    const auto accuracy = [&] { return number("eigenvalue_tolerance"); };
-    const auto row_sums = stated_row_sums(settings);
-    const auto by_need = row_sums.value_or(RowSums::where_ill_determined);
-    if (name == "lspia") return std::make_unique<Lspia>(system, given("mu"), accuracy(), row_sums);
-    if (name == "mlspia")
-        return std::make_unique<Mlspia>(
-            system, MlspiaWeights{given("omega"), given("gamma"), given("nu"), given("lambda")},
-            accuracy(), row_sums);
-    if (name == "cg")
-        return std::make_unique<ConjugateGradients>(system, preconditioner(entry, settings));
-    if (name == "chebyshev") return std::make_unique<Chebyshev>(system, accuracy(), by_need);
-    if (name == "nesterov" || name == "nmlspia")
-        return std::make_unique<Nesterov>(system, accuracy(), entry.name, by_need);
-    if (name == "barzilai-borwein")
-        return std::make_unique<BarzilaiBorwein>(system, static_cast<int>(number("memory")));
-    if (name == "salspia")
-        return std::make_unique<Salspia>(system, static_cast<int>(number("memory")),
-                                         static_cast<SpectralStep>(number("step")));
-    if (name == "alspia")
-        return std::make_unique<Alspia>(system, static_cast<Index>(number("cycle")), accuracy(),
-                                        by_need);
-    if (name == "lin2018") return std::make_unique<Lin2018>(system);
-    if (auto method = make_newer_method(entry, system, settings)) return method;
+    if (entry.make != nullptr) return entry.make(system, {entry, settings});
     throw InvalidInput(fmt::format("method {} is no iteration on the normal equations", name));
 }
 

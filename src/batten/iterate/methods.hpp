@@ -11,12 +11,19 @@
 
 namespace batten {
 
+/// The settings of a method, given or the table's.
+struct ChosenSettings;
+/// Makes the iteration on a normal system.
+using MethodMaker = std::unique_ptr<Method> (*)(const NormalSystem&, const ChosenSettings&);
+
 /// What a user can ask for by name.
 struct MethodEntry {
     std::string_view name;
     std::string_view description;
     std::string_view source; ///< empty for what is common knowledge
     std::span<const MethodSetting> settings;
+    MethodMaker make = nullptr; ///< null: no iteration, or one that needs more than the system
+    bool needs_samples = false; ///< an iteration that has no sense for a fairing's displacements
 };
 
 /// Everything that can be asked for by name, with its settings.
