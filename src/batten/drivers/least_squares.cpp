@@ -14,6 +14,7 @@
 #include <batten/solve/factor_search.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/solve/keep_shape.hpp>
+#include <batten/solve/nested_cholesky.hpp>
 #include <batten/solve/working_eigenvalues.hpp>
 
 #include <algorithm>
@@ -205,8 +206,8 @@ Course answered(const Equations& equations, const Problem& problem, std::string_
 double above_minimum(const Equations& equations, const NormalSystem& samples,
                      const Problem& problem, const PointSet& control) {
     const NormalSystem& system = *equations.system;
-    const Index most = equations.axes.size() > 2 ? 4000 : 20000; // by nested dissection
-    if (equations.axes.size() > 1 && system.factors().empty() && system.size() > most) return -1;
+    const std::size_t axes = equations.axes.size();
+    if (axes > 1 && system.factors().empty() && system.size() > most_dissected(axes)) return -1;
     PointSet least;
     try {
         least = solve_direct(system, sample_rows(equations, problem), equations.held);

@@ -4,6 +4,7 @@
 #include <batten/fair/fairing_system.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/solve/factorization.hpp>
+#include <batten/solve/nested_cholesky.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -77,8 +78,7 @@ std::string method_of(const FairOptions& options, const FairingSystem& system) {
         throw InvalidInput(fmt::format(
             "fair: method {} is for samples; direct, lin2018, cg, ... can", options.method));
     if (options.method != "auto") return options.method;
-    const Index most = system.axes().size() > 2 ? 4000 : 65536; // by nested dissection
-    return system.size() <= most ? "direct" : "cg";
+    return system.size() <= most_dissected(system.axes().size()) ? "direct" : "cg";
 }
 
 PointSet solved(const FairingSystem& system) {
