@@ -5,19 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <utility>
 
 namespace batten {
 
 namespace {
 
-/// A rotation of two numbers that leaves nothing of the second.
+/// A rotation of two numbers that leaves nothing of the second; none where both have decayed so far
+/// from row to row that their squares are nothing: then the second may be dropped.
 struct Rotation {
-    Extended cosine;
-    Extended sine;
+    Extended cosine = 1;
+    Extended sine = 0;
 
     Rotation(Extended kept, Extended gone) {
-        const Extended length = std::sqrt(kept * kept + gone * gone);
+        const Extended squares = kept * kept + gone * gone;
+        if (squares < std::numeric_limits<Extended>::min()) return;
+        const Extended length = std::sqrt(squares);
         cosine = kept / length;
         sine = gone / length;
     }

@@ -1,6 +1,7 @@
 #include "problems.hpp"
 
 #include <batten/solve/banded_cholesky.hpp>
+#include <batten/solve/sample_rows.hpp>
 #include <batten/system/collocation.hpp>
 
 namespace batten {
@@ -93,6 +94,26 @@ TEST(Direct, a_grid_is_solved_axis_by_axis) {
         reference::least_squares(product, reference::matrix(samples.points));
     EXPECT_LT(reference::difference(best, uncentred(p, system->centre())),
               1e-9); // condition of the Gram matrix about 1e4
+}
+
+TEST(RowFactorization, joins_long_triangles) {
+    // rows of the second chunk rotate in over a thousand columns of the first one's leftovers,
+    // which decay below every number
+    const Index n = 4000;
+    const Index m = 26000;
+    const KnotVector knots = uniform_knots(3, n, 0, 1);
+    std::vector<double> t;
+    PointSet cubes(m, 1);
+    for (Index i = 0; i < m; ++i) {
+        t.push_back(static_cast<double>(i) / static_cast<double>(m - 1));
+        cubes(i, 0) = std::pow(t.back(), 3);
+    }
+    const Samples samples = testing::sequence(std::move(cubes));
+    const Parameters parameters{{t}, {}};
+    const PointSet found =
+        RowFactorization({knots}, {.samples = samples, .parameters = parameters}, {0}).solution();
+    for (Index i = 0; i < n; ++i) // the blossom of the cube
+        ASSERT_NEAR(found(i, 0), knots[i + 1] * knots[i + 2] * knots[i + 3], 1e-14) << i;
 }
 
 TEST(ExtremeEigenvalues, agree_with_a_dense_singular_value_decomposition) {
