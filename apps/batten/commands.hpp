@@ -1,11 +1,14 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 namespace batten::command {
 
 /// Thrown once everything is written: the fit stands, but a stated goal was not reached.
-struct GoalMissed {};
+struct GoalMissed {
+    std::string words; ///< which, where no report was printed that says so
+};
 
 /// Each adds its subcommand; the work is done in the subcommand's callback and reports trouble by
 /// exceptions.

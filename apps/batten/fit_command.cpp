@@ -7,6 +7,7 @@
 #include <batten/io/spline_file.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/report/html.hpp>
+#include <batten/report/words.hpp>
 
 #include <cstdio>
 #include <fmt/format.h>
@@ -81,7 +82,8 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
         print_notes(flags.outputs, scene);
         std::fputs(result.report.full().c_str(), writes_standard_output(flags) ? stderr : stdout);
     }
-    if (!result.report.goals_met()) throw GoalMissed{};
+    if (!result.report.goals_met())
+        throw GoalMissed{flags.quiet ? missed_words(result.report) : ""};
 }
 
 } // namespace

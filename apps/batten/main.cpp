@@ -115,8 +115,8 @@ int run(int argc, char** argv) {
     int status = done;
     try {
         status = parse_and_run(app, argc, argv);
-    } catch (const command::GoalMissed&) {
-        status = not_within;
+    } catch (const command::GoalMissed& missed) {
+        status = missed.words.empty() ? not_within : complain(missed.words, not_within);
     }
     finish_standard_output();
     return status;

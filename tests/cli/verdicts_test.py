@@ -50,6 +50,21 @@ class Goals(Verdicts):
             self.assertGreater(largest_distance(spline, data), 1e-9)
             self.assertIn("missed      deviation: stated 1e-09, reached", words)
 
+    def test_a_quiet_fit_says_on_one_line_what_it_missed(self):
+        name = self.save("w.csv", wave(60))
+        for options, words in ((["-t", 1e-6, "--max-control-points", 8], "tolerance 1e-06: not met: 8 control points are allowed and do not suffice; .*"),
+                               (["-n", 12, "-m", "lspia", "--stop-deviation", 1e-9], r"deviation: stated 1e-09, reached \S+"),
+                               (["-n", 12, "-m", "clspia", "--interpolate", "0,30", "--stop-gradient", 1e-12, "--max-iterations", 2],
+                                r"gradient: stated 1e-12, reached \S+; exact samples: stated \S+, reached \S+")):
+            done = self.run_batten("fit", name, *options, "-q", "-o", "s.json")
+            self.assertEqual((done.returncode, done.stdout), (4, ""), done)
+            self.assertRegex(done.stderr, f"^batten: missed: {words}\n$")
+            self.assertTrue((self.folder / "s.json").exists())
+            said = self.run_batten("fit", name, *options, "-o", "s.json")
+            self.assertEqual((said.returncode, said.stderr), (4, ""), said)  # the report says it
+        done = self.run_batten("fit", name, "-t", 0.01, "-q", "-o", "s.json")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+
     def test_epia_is_judged_by_the_parameters_that_it_fitted(self):
         glyph = shared(self, "glyph273.csv")
         spline, report, _ = self.fit(0, glyph, "-m", "epia", "--stop-deviation", 0.0035, "--parametrize", "uniform")

@@ -1,4 +1,4 @@
-#include <batten/problem/report.hpp>
+#include <batten/report/words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -149,20 +149,31 @@ Lines exactness(const FitReport& r) {
     return lines;
 }
 
+std::string words_of(const Goal& goal) {
+    return fmt::format("{}: stated {:.6g}, {}", goal.name, goal.stated,
+                       std::isfinite(goal.reached) ? fmt::format("reached {:.6g}", goal.reached)
+                                                   : "turned round");
+}
+
 /// Stated goals that were not reached, but for the tolerance, whose verdict says so.
 Lines missed_goals(const FitReport& r) {
     Lines lines;
     for (const Goal& goal : r.goals)
-        if (!goal.met && goal.name != "tolerance")
-            lines.emplace_back("missed",
-                               fmt::format("{}: stated {:.6g}, {}", goal.name, goal.stated,
-                                           std::isfinite(goal.reached)
-                                               ? fmt::format("reached {:.6g}", goal.reached)
-                                               : "turned round"));
+        if (!goal.met && goal.name != "tolerance") lines.emplace_back("missed", words_of(goal));
     return lines;
 }
 
 } // namespace
+
+std::string missed_words(const FitReport& report) {
+    std::string words;
+    for (const Goal& goal : report.goals)
+        if (!goal.met)
+            words += (words.empty() ? "missed: " : "; ") +
+                     (goal.name == "tolerance" ? "tolerance " + tolerance_words(report)
+                                               : words_of(goal));
+    return words;
+}
 
 std::vector<std::pair<std::string, std::string>> FitReport::lines() const {
     Lines result;
