@@ -1,10 +1,10 @@
 // Lin, Wang, Dong 2004, PIA. The paper's helix and peaks data are not given to the digit; the
 // errors expected here are of the same formulas computed independently, the paper's Table 1 stands
 // beside them.
+#include "lin_wang_dong_data.hpp"
 #include "problems.hpp"
 
 #include <batten/shape/polygon.hpp>
-#include <numbers>
 
 namespace batten {
 namespace {
@@ -23,16 +23,9 @@ std::vector<double> errors(const Samples& samples) {
 }
 
 TEST(LinWangDong, helix_of_20_points) {
-    PointSet q(20, 3);
-    for (Index i = 0; i < 20; ++i) {
-        const double t = 8 * std::numbers::pi * static_cast<double>(i) / 19;
-        q(i, 0) = 6 * std::cos(t);
-        q(i, 1) = 6 * std::sin(t);
-        q(i, 2) = 2 * t;
-    }
     const double expected[] = {1.9600035545, 0.30703252999, 0.068938778514, 2.2082744728e-4,
                                2.6628015e-7}; // paper, 4 digits at step 0: 1.9603
-    const auto found = errors(testing::sequence(q));
+    const auto found = errors(command::paper_helix());
     for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(found[k] / expected[k], 1, k < 4 ? 1e-9 : 1e-7);
 }
 
@@ -92,26 +85,11 @@ TEST(LinWangDong, any_square_collocation_and_any_weight) {
               "axis 0: pia needs as many control points as samples, got 20 and 30");
 }
 
-/// Points of a convex arc at random angles and radii that keep it convex: on an ellipse, unevenly.
-Samples convex_polygon(unsigned seed) {
-    std::mt19937_64 random(seed);
-    std::uniform_real_distribution<double> step(0.05, 1);
-    std::vector<double> angle{0};
-    for (int i = 0; i < 11; ++i) angle.push_back(angle.back() + step(random));
-    PointSet q(12, 2);
-    for (Index i = 0; i < 12; ++i) {
-        const double a = angle[static_cast<std::size_t>(i)] / angle.back() * 1.8 * std::numbers::pi;
-        q(i, 0) = 3 * std::cos(a);
-        q(i, 1) = std::sin(a);
-    }
-    return testing::sequence(q);
-}
-
 TEST(LinWangDong, convexity_preserving_pia_keeps_every_turn) {
     int lost = 0;
     int locked = 0;
     for (unsigned seed = 0; seed < 60; ++seed) {
-        const Samples q = convex_polygon(seed);
+        const Samples q = command::convex_polygon(seed);
         FitOptions options;
         options.method.name = "pia";
         options.stop = {.max_iterations = 30, .relative_gradient = 0};

@@ -1,47 +1,15 @@
+#include "lin_wang_dong_data.hpp"
 #include "papers.hpp"
 
 #include <batten/samples/generate.hpp>
 #include <batten/shape/polygon.hpp>
 
 #include <array>
-#include <cmath>
 #include <fmt/format.h>
-#include <numbers>
-#include <random>
 
 namespace batten::command {
 
 namespace {
-
-Samples paper_helix() {
-    PointSet q(20, 3);
-    for (Index i = 0; i < 20; ++i) {
-        const double t = 8 * std::numbers::pi * static_cast<double>(i) / 19;
-        q(i, 0) = 6 * std::cos(t);
-        q(i, 1) = 6 * std::sin(t);
-        q(i, 2) = 2 * t;
-    }
-    Samples samples;
-    samples.points = Points(std::move(q));
-    return samples;
-}
-
-/// An uneven convex polygon on which plain PIA loses convexity.
-Samples convex_polygon() {
-    std::mt19937_64 random(0);
-    std::uniform_real_distribution<double> step(0.05, 1);
-    std::vector<double> angle{0};
-    for (int i = 0; i < 11; ++i) angle.push_back(angle.back() + step(random));
-    PointSet q(12, 2);
-    for (Index i = 0; i < 12; ++i) {
-        const double a = angle[static_cast<std::size_t>(i)] / angle.back() * 1.8 * std::numbers::pi;
-        q(i, 0) = 3 * std::cos(a);
-        q(i, 1) = std::sin(a);
-    }
-    Samples samples;
-    samples.points = Points(std::move(q));
-    return samples;
-}
 
 FitOptions pia_options() {
     FitOptions options;
@@ -67,7 +35,7 @@ std::vector<Table> lin_wang_dong(Workshop& workshop) {
     const FitResult helix = drawn_fit(paper_helix(), options, workshop, "pia_helix", {0, 4, 15});
     const FitResult peaks =
         drawn_fit(generate("peaks", {30, 30}), options, workshop, "pia_peaks", {0, 3, 15});
-    const Samples polygon = convex_polygon();
+    const Samples polygon = convex_polygon(0);
     const auto inflections = [](const FitResult& r) {
         return static_cast<double>(inflection_count(r.spline.control_points()));
     };
