@@ -13,6 +13,9 @@ struct GoalMissed {
 /// Each adds its subcommand; the work is done in the subcommand's callback and reports trouble by
 /// exceptions.
 void add_fit(CLI::App& app);
+void add_assemble(CLI::App& app);
+void add_merge(CLI::App& app);
+void add_solve(CLI::App& app);
 void add_evaluate(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_info(CLI::App& app);

@@ -5,10 +5,7 @@ namespace batten::command {
 
 namespace {
 
-void add_shape_flags(CLI::App& fit, FitFlags& flags) {
-    fit.add_option("--control-points,-n", flags.control_points,
-                   "Number of control points: 30, 20x30 or 8x8x8")
-        ->group("Size");
+void add_tolerance_flags(CLI::App& fit, FitFlags& flags) {
     fit.add_option("--tolerance,-t", flags.tolerance,
                    "Every sample within this distance, with as few control points as it takes")
         ->check(positive())
@@ -24,6 +21,14 @@ void add_shape_flags(CLI::App& fit, FitFlags& flags) {
                    "auto, none, or a list of samples: where a curve may bend sharply")
         ->group("Size")
         ->capture_default_str();
+}
+
+} // namespace
+
+void add_data_flags(CLI::App& fit, FitFlags& flags) {
+    fit.add_option("--control-points,-n", flags.control_points,
+                   "Number of control points: 30, 20x30 or 8x8x8")
+        ->group("Size");
     fit.add_option("--degree,-p", flags.degree, "Degree 1 to 9, one for all axes or one each")
         ->delimiter(',')
         ->group("Shape")
@@ -53,6 +58,11 @@ void add_shape_flags(CLI::App& fit, FitFlags& flags) {
     fit.add_option("--spacing", flags.spacing, "Grid distances DX,DY of --heights")
         ->group("Points")
         ->capture_default_str();
+}
+
+namespace {
+
+void add_weights_flag(CLI::App& fit, FitFlags& flags) {
     fit.add_option("--weights", flags.weights, "File of one positive weight per sample")
         ->group("Points");
 }
@@ -145,7 +155,9 @@ void add_output_flags(CLI::App& fit, FitFlags& flags) {
 
 void add_flags(CLI::App& fit, FitFlags& flags) {
     add_output_flags(fit, flags);
-    add_shape_flags(fit, flags);
+    add_data_flags(fit, flags);
+    add_tolerance_flags(fit, flags);
+    add_weights_flag(fit, flags);
     add_method_flags(fit, flags);
     add_noise_and_stop_flags(fit, flags);
     one_value_each(fit);

@@ -57,8 +57,21 @@ struct FitFlags {
 /// Adds the flags to the subcommand.
 void add_flags(CLI::App& fit, FitFlags& flags);
 
+/// Of these, those that say what the points are and over which knots they are taken: size, shape
+/// and parameters, grid and heights.
+void add_data_flags(CLI::App& fit, FitFlags& flags);
+
 /// The points that the flags name, with their grid, weights and notes.
 Samples samples_of(const FitFlags& flags);
+
+/// What they say of the spline's space; `fit` knows which were given.
+ShapeOptions shape_options(const FitFlags& flags, const CLI::App& fit, const Samples& samples);
+
+/// `auto`, or the factor of a roughness of this order; nothing is smoothed for an empty text.
+SmoothOptions smooth_options(const std::string& text, int order);
+
+/// Knots per axis: of a spline .json, or of one axis in a text file.
+std::vector<std::vector<double>> given_knots(const std::string& path);
 
 /// What the flags ask of the fit; `fit` knows which were given. Throws InvalidInput naming the
 /// flag.

@@ -68,6 +68,8 @@ std::optional<Parameters> given_parameters(const FitFlags& flags) {
     return parameters;
 }
 
+} // namespace
+
 std::vector<std::vector<double>> given_knots(const std::string& path) {
     if (extension(path) != ".json") return {read_table(path).values()};
     std::vector<std::vector<double>> knots;
@@ -100,6 +102,8 @@ ShapeOptions shape_options(const FitFlags& flags, const CLI::App& fit, const Sam
         shape.knots = given_knots(flags.knots);
     return shape;
 }
+
+namespace {
 
 MethodOptions method_options(const FitFlags& flags) {
     MethodOptions method;
@@ -160,17 +164,20 @@ HeldBoundary boundary(const std::string& text) {
             .spline = read({text.substr(3)})};
 }
 
-SmoothOptions smooth_options(const FitFlags& flags) {
+} // namespace
+
+SmoothOptions smooth_options(const std::string& text, int order) {
     SmoothOptions smooth;
-    smooth.wanted = !flags.smooth.empty();
-    smooth.order = flags.smooth_order;
-    if (flags.smooth.empty() || flags.smooth == "auto") return smooth;
-    smooth.lambda = parse_number("--smooth", flags.smooth);
+    smooth.wanted = !text.empty();
+    smooth.order = order;
+    if (text.empty() || text == "auto") return smooth;
+    smooth.lambda = parse_number("--smooth", text);
     if (!(smooth.lambda > 0) || !std::isfinite(smooth.lambda))
-        throw InvalidInput(
-            fmt::format("--smooth {}: auto or a positive number is needed", flags.smooth));
+        throw InvalidInput(fmt::format("--smooth {}: auto or a positive number is needed", text));
     return smooth;
 }
+
+namespace {
 
 HoldOptions hold_options(const FitFlags& flags, const Samples& samples) {
     constexpr std::string_view shapes[] = {"convexity", "inflections"};
@@ -252,7 +259,7 @@ FitOptions options_of(const FitFlags& flags, const CLI::App& fit, const Samples&
     options.tolerance = tolerance_options(flags, fit);
     options.method = method_options(flags);
     options.hold = hold_options(flags, samples);
-    options.smooth = smooth_options(flags);
+    options.smooth = smooth_options(flags.smooth, flags.smooth_order);
     options.outliers = flags.robust ? Outliers::set_aside : Outliers::count;
     if (!flags.moving.empty()) options.method.moving = index_list("--moving", flags.moving);
     options.stop = stop_rule(flags, fit);

@@ -27,6 +27,9 @@ constexpr const char* next_steps =
 void add_commands(CLI::App& app) {
     command::add_fit(app);
     command::add_fair(app);
+    command::add_assemble(app);
+    command::add_merge(app);
+    command::add_solve(app);
     command::add_evaluate(app);
     command::add_compare(app);
     command::add_info(app);

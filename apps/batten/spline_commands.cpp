@@ -2,12 +2,14 @@
 #include "export_flags.hpp"
 #include "parse.hpp"
 #include "spline_input.hpp"
+#include "system_files.hpp"
 
 #include <batten/io/output_file.hpp>
 #include <batten/io/output_set.hpp>
 #include <batten/io/points_file.hpp>
 #include <batten/io/spline_file.hpp>
 #include <batten/io/svg.hpp>
+#include <batten/io/system_file.hpp>
 #include <batten/measure/deviation.hpp>
 
 #include <array>
@@ -216,10 +218,14 @@ void add_compare(CLI::App& app) {
 void add_info(CLI::App& app) {
     CLI::App* sub = app.add_subcommand("info", "What is in a file");
     auto file = std::make_shared<std::string>();
-    sub->add_option("FILE", *file, "A spline or points")->required();
+    sub->add_option("FILE", *file, "A spline, a saved system or points")->required();
     sub->footer("Example:\n  batten info part.json");
-    sub->callback(
-        [file] { is_spline_file(*file) ? describe_splines(*file) : describe_points(*file); });
+    sub->callback([file] {
+        if (extension(*file) == ".sys")
+            fmt::print("{}: {}\n", *file, system_words(load_system(*file)));
+        else
+            is_spline_file(*file) ? describe_splines(*file) : describe_points(*file);
+    });
 }
 
 void add_plot(CLI::App& app) {

@@ -1,10 +1,13 @@
 // libFuzzer target of one reader, named by BATTEN_READER: whatever the bytes, it returns numbers or
 // throws one of the library's errors, and allocates no more than the bytes can hold.
 #include <batten/core/core.hpp>
+#include <batten/io/checksum.hpp>
 #include <batten/io/point_formats.hpp>
 #include <batten/io/spline_file.hpp>
+#include <batten/io/system_file.hpp>
 
 #include <cstdint>
+#include <string>
 
 namespace {
 
@@ -33,6 +36,20 @@ using namespace batten;
 }
 [[maybe_unused]] void json(std::string_view content) {
     parse_spline_json("fuzz.json", std::string(content));
+}
+/// As it stands, and with a checksum that matches, so that what comes after it is reached.
+[[maybe_unused]] void system(std::string_view content) {
+    if (content.size() >= sizeof(std::uint64_t)) {
+        std::string whole(content.substr(0, content.size() - sizeof(std::uint64_t)));
+        const std::uint64_t sum = checksum(whole);
+        for (unsigned k = 0; k < sizeof(sum); ++k)
+            whole.push_back(static_cast<char>(sum >> 8 * k & 0xFFU));
+        try {
+            parse_system("fuzz.sys", whole);
+        } catch (const FileError&) {
+        }
+    }
+    parse_system("fuzz.sys", content);
 }
 
 } // namespace

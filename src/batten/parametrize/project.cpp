@@ -36,7 +36,7 @@ std::array<Direction, 2> best_plane(const Points& points) {
 
 } // namespace
 
-Parameters projected(const Samples& samples, Projection projection) {
+PointSet plane_coordinates(const Samples& samples, Projection projection) {
     const Points& points = samples.points;
     const Index needed = projection == Projection::xy ? 2 : 3;
     if (points.dim() < needed || (projection == Projection::plane && points.dim() != 3))
@@ -49,20 +49,25 @@ Parameters projected(const Samples& samples, Projection projection) {
     if (projection == Projection::xz) axes = {x, z};
     if (projection == Projection::yz) axes = {y, z};
     if (projection == Projection::plane) axes = best_plane(points);
-    Parameters result;
-    result.scattered = PointSet(points.size(), 2);
+    PointSet result(points.size(), 2);
     for (Index i = 0; i < points.size(); ++i)
         for (std::size_t k = 0; k < 2; ++k)
             for (Index d = 0; d < std::min<Index>(points.dim(), 3); ++d)
-                result.scattered(i, static_cast<Index>(k)) +=
+                result(i, static_cast<Index>(k)) +=
                     axes[k][static_cast<std::size_t>(d)] * points(i, d);
+    return result;
+}
+
+Parameters projected(const Samples& samples, Projection projection) {
+    Parameters result;
+    result.scattered = plane_coordinates(samples, projection);
     const PointSet box = bounding_box(result.scattered);
     for (Index k = 0; k < 2; ++k) {
         const double length = box(1, k) - box(0, k);
         if (!(length > 0))
             throw InvalidInput(
                 fmt::format("project: the points have no extent along axis {} of the plane", k));
-        for (Index i = 0; i < points.size(); ++i)
+        for (Index i = 0; i < samples.size(); ++i)
             result.scattered(i, k) = (result.scattered(i, k) - box(0, k)) / length;
     }
     return result;

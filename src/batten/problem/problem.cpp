@@ -75,21 +75,6 @@ void check_net(const Problem& problem) {
     check_memory(checked_product(numbers, what), what);
 }
 
-void check_smoothing(const SmoothOptions& smooth, const AxisPlan& axes) {
-    if (!smooth.wanted) return;
-    if (smooth.order < 2 || smooth.order > 3)
-        throw InvalidInput(
-            fmt::format("smoothing: the derivative's order {} is not 2 or 3", smooth.order));
-    if (!(smooth.lambda >= 0) || !std::isfinite(smooth.lambda))
-        throw InvalidInput(
-            fmt::format("smoothing: the factor {} must be positive and finite", smooth.lambda));
-    for (int degree : axes.degree)
-        if (degree < smooth.order)
-            throw InvalidInput(fmt::format("smoothing: the derivative of order {} vanishes for "
-                                           "degree {}",
-                                           smooth.order, degree));
-}
-
 void check_seam(const FitOptions& options, const AxisPlan& axes) {
     const int order = options.shape.seam_continuity;
     if (order < 0) return;
@@ -179,6 +164,21 @@ void complete_size(Problem& problem) {
 }
 
 } // namespace
+
+void check_smoothing(const SmoothOptions& smooth, const AxisPlan& axes) {
+    if (!smooth.wanted) return;
+    if (smooth.order < 2 || smooth.order > 3)
+        throw InvalidInput(
+            fmt::format("smoothing: the derivative's order {} is not 2 or 3", smooth.order));
+    if (!(smooth.lambda >= 0) || !std::isfinite(smooth.lambda))
+        throw InvalidInput(
+            fmt::format("smoothing: the factor {} must be positive and finite", smooth.lambda));
+    for (int degree : axes.degree)
+        if (degree < smooth.order)
+            throw InvalidInput(fmt::format("smoothing: the derivative of order {} vanishes for "
+                                           "degree {}",
+                                           smooth.order, degree));
+}
 
 void Problem::stop_if_cancelled() const {
     if (options.cancelled && options.cancelled()) throw Cancelled("the fit was cancelled");

@@ -46,6 +46,9 @@ Index axis_count(const Samples& samples, const ShapeOptions& shape);
 /// the samples' diagonal, with smoothing a size. Throws InvalidInput naming what breaks a rule.
 Problem problem_of(const Samples& samples, const FitOptions& options);
 
+/// Throws InvalidInput for a smoothing whose factor or order makes no sense for the axes' degrees.
+void check_smoothing(const SmoothOptions& smooth, const AxisPlan& axes);
+
 /// One tolerance per sample. Throws InvalidInput unless there is one for each, positive.
 std::vector<double> sample_tolerances(const Samples& samples, const ToleranceOptions& options);
 

@@ -7,8 +7,6 @@
 
 namespace batten {
 
-namespace {
-
 std::string percentage(double part, double whole) {
     return whole > 0 ? fmt::format("{:.3g} % of the data's size", 100 * part / whole)
                      : std::string("the data have no size");
@@ -22,8 +20,6 @@ std::string closed_axes(const std::vector<Closure>& closures) {
     return closures.size() == 1 ? ", closed"
                                 : fmt::format(", closed along axis {}", fmt::join(closed, ", "));
 }
-
-} // namespace
 
 double FitReport::total_seconds() const {
     double total = 0;

@@ -3,6 +3,7 @@
 #include <batten/basis/active_functions.hpp>
 #include <batten/core/core.hpp>
 
+#include <span>
 #include <vector>
 
 namespace batten {
@@ -68,6 +69,11 @@ class BandedMatrix {
     void divide(double divisor);
     /// Sum of all entries.
     double total() const;
+    /// The entries as they are stored: (n x (bandwidth + 1)).
+    std::span<const double> values() const { return values_; }
+    std::span<double> values() { return values_; }
+
+    bool operator==(const BandedMatrix&) const = default;
 
   private:
     Index size_ = 0;

@@ -2,7 +2,6 @@
 
 #include <batten/system/chebyshev_maps.hpp>
 #include <batten/system/moments.hpp>
-#include <batten/system/roughness.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -130,8 +129,7 @@ class ChunkPass {
 } // namespace
 
 BandedSystem::BandedSystem(const KnotVector& knots, std::vector<double> centre)
-    : FactoredSystem({knots}, std::move(centre)),
-      gram_(knots.free_count(), knots.degree(), knots.closure()) {}
+    : FactoredSystem({knots}, std::move(centre)) {}
 
 void BandedSystem::add(std::span<const double> parameters, const Points& points,
                        std::span<const double> weights) {
@@ -140,6 +138,7 @@ void BandedSystem::add(std::span<const double> parameters, const Points& points,
     const int p = knots.degree();
     const Index n = knots.free_count();
     const ChunkPass pass(knots, centre_);
+    BandedMatrix& gram = grams_[0];
     const Index chunks = block_count(points.size(), chunk_samples);
     std::vector<ChunkSums> wave;
     for (Index first = 0; first < chunks; first += wave_chunks) {
@@ -158,7 +157,7 @@ void BandedSystem::add(std::span<const double> parameters, const Points& points,
             for (Index span : sums.spans) {
                 for (int i = 0; i <= p; ++i) {
                     const Index row = (span - p + i) % n;
-                    for (int j = i; j <= p; ++j) gram_.at(row, j - i) += sums.grams[pair++];
+                    for (int j = i; j <= p; ++j) gram.at(row, j - i) += sums.grams[pair++];
                     for (Index d = 0; d < dim(); ++d) rhs_(row, d) += sums.rhs[value++];
                 }
             }
@@ -166,15 +165,6 @@ void BandedSystem::add(std::span<const double> parameters, const Points& points,
         }
     }
     sample_count_ += points.size();
-}
-
-void BandedSystem::apply(const PointSet& x, PointSet& y) const {
-    gram_.apply(x.data(), y.data(), {1, x.dim()});
-}
-
-void BandedSystem::add_roughness(double lambda, int order) {
-    gram_.add(lambda * gram_.total(),
-              unit_roughness_matrix(axes_[0], order)); // B-splines sum to one
 }
 
 } // namespace batten

@@ -15,6 +15,13 @@ class Collocation {
     /// Parameters need not be sorted. Throws InvalidInput when one lies outside an open domain.
     Collocation(const KnotVector& knots, std::span<const double> parameters);
 
+    /// Rows made otherwise: per row its first column and degree + 1 values, (rows x (degree + 1)).
+    Collocation(int degree, Index columns, std::vector<Index> first, std::vector<double> values)
+        : degree_(degree),
+          columns_(columns),
+          first_(std::move(first)),
+          values_(std::move(values)) {}
+
     Index rows() const { return static_cast<Index>(first_.size()); }
     Index columns() const { return columns_; }
     int degree() const { return degree_; }

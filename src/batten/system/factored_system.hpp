@@ -2,16 +2,30 @@
 
 #include <batten/system/collocation.hpp>
 #include <batten/system/normal_system.hpp>
+#include <batten/system/system_sums.hpp>
 
 namespace batten {
 
 /// A normal system whose matrix is the Kronecker product of one banded matrix per axis.
 class FactoredSystem : public NormalSystem {
   public:
+    /// The one that these sums, which have factors, belong to.
+    explicit FactoredSystem(SystemSums sums);
+
+    std::unique_ptr<NormalSystem> clone() const override {
+        return std::make_unique<FactoredSystem>(*this);
+    }
+    SystemSums sums() const override;
+    void apply(const PointSet& x, PointSet& y) const override;
+    std::vector<double> diagonal() const override;
     void for_each_entry(EntryVisitor visit) const override;
+    std::vector<const BandedMatrix*> factors() const override;
+    void add_roughness(double lambda, int order) override;
 
   protected:
-    using NormalSystem::NormalSystem;
+    FactoredSystem(std::vector<KnotVector> axes, std::vector<double> centre);
+
+    std::vector<BandedMatrix> grams_; // one per axis
 };
 
 /// The normal system of a sequence: one banded matrix, built in one pass from the moments of each
@@ -29,13 +43,6 @@ class BandedSystem : public FactoredSystem {
     std::unique_ptr<NormalSystem> clone() const override {
         return std::make_unique<BandedSystem>(*this);
     }
-    void apply(const PointSet& x, PointSet& y) const override;
-    std::vector<double> diagonal() const override { return gram_.diagonal(); }
-    std::vector<const BandedMatrix*> factors() const override { return {&gram_}; }
-    void add_roughness(double lambda, int order) override;
-
-  private:
-    BandedMatrix gram_;
 };
 
 /// The normal system of a full grid of unit weights along 2 or 3 axes: the Kronecker product of one
@@ -54,14 +61,9 @@ class KroneckerSystem : public FactoredSystem {
     std::unique_ptr<NormalSystem> clone() const override {
         return std::make_unique<KroneckerSystem>(*this);
     }
-    void apply(const PointSet& x, PointSet& y) const override;
-    std::vector<double> diagonal() const override;
-    std::vector<const BandedMatrix*> factors() const override;
-    void add_roughness(double lambda, int order) override;
 
   private:
     std::vector<Collocation> collocations_;
-    std::vector<BandedMatrix> grams_;
     Index slice_values_; // doubles in one slice along axis 0
     std::vector<double> slice_centre_;
     std::vector<double> slices_sum_; // (n_0 x slice_values): A_0^T Q

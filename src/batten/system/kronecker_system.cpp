@@ -2,7 +2,6 @@
 
 #include <batten/core/lane_vectors.hpp>
 #include <batten/core/vector_clones.hpp>
-#include <batten/system/roughness.hpp>
 
 namespace batten {
 
@@ -84,7 +83,6 @@ KroneckerSystem::KroneckerSystem(std::vector<KnotVector> axes, std::vector<doubl
     : FactoredSystem(std::move(axes), std::move(centre)), slice_values_(dim()) {
     for (std::size_t k = 0; k < axes_.size(); ++k) {
         collocations_.emplace_back(axes_[k], parameters.axes[k]);
-        grams_.emplace_back(axes_[k].free_count(), axes_[k].degree(), axes_[k].closure());
         for (Index j = 0; j < collocations_[k].rows(); ++j)
             grams_[k].add_outer(1, collocations_[k].row(j));
         if (k > 0) slice_values_ *= collocations_[k].rows();
@@ -143,38 +141,6 @@ void KroneckerSystem::finish() {
         inner *= axes_[k].free_count();
     }
     rhs_ = PointSet(std::move(values), dim());
-}
-
-void KroneckerSystem::apply(const PointSet& x, PointSet& y) const {
-    const std::size_t last = axes_.size() - 1;
-    grams_[last].apply(x.data(), y.data(), along(controls_, last, x.dim()));
-    PointSet before;
-    for (std::size_t k = last; k-- > 0;) {
-        before = y;
-        grams_[k].apply(before.data(), y.data(), along(controls_, k, x.dim()));
-    }
-}
-
-std::vector<double> KroneckerSystem::diagonal() const {
-    std::vector<double> result{1.0};
-    for (const BandedMatrix& gram : grams_) {
-        std::vector<double> next;
-        for (double outer : result)
-            for (double inner : gram.diagonal()) next.push_back(outer * inner);
-        result = std::move(next);
-    }
-    return result;
-}
-
-std::vector<const BandedMatrix*> KroneckerSystem::factors() const {
-    std::vector<const BandedMatrix*> result;
-    for (const BandedMatrix& gram : grams_) result.push_back(&gram);
-    return result;
-}
-
-void KroneckerSystem::add_roughness(double lambda, int order) {
-    for (std::size_t k = 0; k < grams_.size(); ++k)
-        grams_[k].add(lambda * grams_[k].total(), unit_roughness_matrix(axes_[k], order));
 }
 
 } // namespace batten

@@ -2,6 +2,7 @@
 
 #include <batten/system/factored_system.hpp>
 #include <batten/system/stencil_system.hpp>
+#include <batten/system/system_sums.hpp>
 
 #include <algorithm>
 
@@ -24,6 +25,26 @@ NormalSystem::NormalSystem(std::vector<KnotVector> axes, std::vector<double> cen
       controls_(free_shape(axes_)),
       centre_(std::move(centre)),
       rhs_(controls_.size(), static_cast<Index>(centre_.size())) {}
+
+NormalSystem::NormalSystem(SystemSums&& sums)
+    : axes_(std::move(sums.axes)),
+      controls_(free_shape(axes_)),
+      centre_(std::move(sums.centre)),
+      rhs_(std::move(sums.rhs)),
+      data_energy_(sums.energy),
+      sample_count_(sums.samples) {}
+
+SystemSums NormalSystem::common_sums() const {
+    return {.axes = axes_,
+            .centre = centre_,
+            .samples = sample_count_,
+            .energy = data_energy_,
+            .rhs = rhs_};
+}
+
+SystemSums NormalSystem::sums() const {
+    throw InvalidInput("a system that is not one of samples has no sums over them");
+}
 
 PointSet NormalSystem::gradient(const PointSet& control) const {
     PointSet result(size(), dim());

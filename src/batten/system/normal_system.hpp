@@ -10,6 +10,8 @@
 
 namespace batten {
 
+struct SystemSums;
+
 /// The normal equations A^T D A P = A^T D Q of a weighted least-squares fit, D the sample weights.
 ///
 /// Built in one pass over the samples; afterwards everything costs O(control points). Coordinates
@@ -24,6 +26,9 @@ class NormalSystem {
     NormalSystem& operator=(const NormalSystem&) = delete;
     /// An independent copy, to add roughness to.
     virtual std::unique_ptr<NormalSystem> clone() const = 0;
+    /// The sums over the samples that it consists of (system/system_sums.hpp), without their box.
+    /// Throws InvalidInput for a system that is not one of samples.
+    virtual SystemSums sums() const;
 
     /// Free control points N of the spline.
     Index size() const { return controls_.size(); }
@@ -74,6 +79,10 @@ class NormalSystem {
   protected:
     NormalSystem(const NormalSystem&) = default;
     NormalSystem(std::vector<KnotVector> axes, std::vector<double> centre);
+    /// Takes what every system has out of the sums; the matrix's are left in them.
+    explicit NormalSystem(SystemSums&& sums);
+    /// The sums that every system has.
+    SystemSums common_sums() const;
 
     std::vector<KnotVector> axes_;
     GridIndex controls_;

@@ -1,10 +1,12 @@
 #include <batten/system/stencil_system.hpp>
 
 #include <batten/core/vector_clones.hpp>
+#include <batten/system/half_stencil.hpp>
 #include <batten/system/roughness.hpp>
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
 
@@ -12,12 +14,23 @@ namespace batten {
 
 namespace {
 
-/// Places of half a stencil: offsets of 0 to the degree along axis 0, of both signs along the
-/// others.
-GridIndex half_stencil(const std::vector<KnotVector>& axes) {
-    std::vector<Index> shape{axes[0].degree() + 1};
-    for (std::size_t k = 1; k < axes.size(); ++k) shape.push_back(2 * axes[k].degree() + 1);
-    return GridIndex(shape);
+/// Per axis the others' part in a product of factors, which is that of its own matrix there.
+std::vector<BandedMatrix> axis_sums_of(const std::vector<BandedMatrix>& factors) {
+    std::vector<BandedMatrix> result;
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+        double others = 1;
+        for (std::size_t l = 0; l < factors.size(); ++l)
+            if (l != k) others *= factors[l].total();
+        result.emplace_back(factors[k].size(), factors[k].bandwidth(), factors[k].closure());
+        result.back().add(others, factors[k]);
+    }
+    return result;
+}
+
+/// Of the factors of a grid, each a sum over the parameters of its axis, the means.
+std::vector<BandedMatrix> means_of(std::vector<BandedMatrix> factors) {
+    for (BandedMatrix& factor : factors) factor.divide(std::round(factor.total()));
+    return factors;
 }
 
 } // namespace
@@ -27,7 +40,7 @@ StencilSystem::StencilSystem(std::vector<KnotVector> axes, std::vector<double> c
       places_(half_stencil(axes_)),
       same_slice_(places_.stride(0)) {
     places_.for_each([&](GridIndex::Place offset, Index) {
-        for (std::size_t k = 1; k < axes_.size(); ++k) offset[k] -= axes_[k].degree();
+        offset = half_stencil_offset(axes_, offset);
         offsets_.push_back(offset);
         flat_offsets_.push_back(controls_.at(offset));
     });
@@ -40,6 +53,31 @@ StencilSystem::StencilSystem(std::vector<KnotVector> axes, std::vector<double> c
     GridIndex(active).for_each(
         [&](const GridIndex::Place& place, Index) { active_places_.push_back(places_.at(place)); });
     stencil_.resize(static_cast<std::size_t>(GridIndex{places_.size(), size()}.size()));
+}
+
+StencilSystem::StencilSystem(SystemSums sums) : StencilSystem(sums.axes, sums.centre) {
+    sample_count_ = sums.samples;
+    data_energy_ = sums.energy;
+    total_weight_ = sums.weight;
+    rhs_ = std::move(sums.rhs);
+    if (sums.factors.empty()) {
+        stencil_ = std::move(sums.stencil);
+        axis_grams_ = std::move(sums.axis_sums);
+        grid_means_ = std::move(sums.grid_means);
+        return;
+    }
+    add_product(1, sums.factors);
+    axis_grams_ = axis_sums_of(sums.factors);
+    if (axes_.size() > 1) grid_means_ = means_of(std::move(sums.factors));
+}
+
+SystemSums StencilSystem::sums() const {
+    SystemSums result = common_sums();
+    result.weight = total_weight_;
+    result.stencil = stencil_;
+    result.axis_sums = axis_grams_;
+    result.grid_means = grid_means_;
+    return result;
 }
 
 Index StencilSystem::neighbour(Index control, Index place) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <batten/system/normal_system.hpp>
+#include <batten/system/system_sums.hpp>
 
 namespace batten {
 
@@ -9,6 +10,8 @@ namespace batten {
 class StencilSystem : public NormalSystem {
   public:
     StencilSystem(std::vector<KnotVector> axes, std::vector<double> centre);
+    /// The one that these sums belong to; a product of factors is spelled out.
+    explicit StencilSystem(SystemSums sums);
 
     /// Adds samples with their parameters (m x axes), in any order, and weights (one each, or
     /// none). Over two axes the samples are sorted by cell and each cell is taken from its moments.
@@ -21,6 +24,7 @@ class StencilSystem : public NormalSystem {
     std::unique_ptr<NormalSystem> clone() const override {
         return std::make_unique<StencilSystem>(*this);
     }
+    SystemSums sums() const override;
     void apply(const PointSet& x, PointSet& y) const override;
     std::vector<double> diagonal() const override;
     void for_each_entry(EntryVisitor visit) const override;
