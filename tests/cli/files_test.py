@@ -20,6 +20,7 @@ class Files(InFolder):
         t = np.linspace(0, 3, 60)
         np.savetxt(self.folder / "p.csv", np.c_[np.cos(t), np.sin(2 * t)], delimiter=",")
         self.good("fit", "p.csv", "-n", 8, "-q", "-o", "s.json")
+        self.good("assemble", "p.csv", "-n", 8, "-q", "-o", "s.sys")
 
     def run_batten(self, *arguments, **how):
         how = {"capture_output": True, "stdin": subprocess.DEVNULL, **how}
@@ -56,11 +57,12 @@ class Files(InFolder):
 # one command line of every verb that writes; OUT is the output
 WRITERS = {"fit -o": "fit p.csv -n 8 -q -o OUT.json", "fit --summary": "fit p.csv -n 8 -q --summary OUT.json",
            "fit --report": "fit p.csv -n 8 -q --report OUT.html", "evaluate": "evaluate s.json --samples 40 -o OUT.csv",
-           "convert": "convert s.json -o OUT.obj", "plot": "plot s.json p.csv -o OUT.svg", "generate": "generate rose -o OUT.csv"}
+           "convert": "convert s.json -o OUT.obj", "plot": "plot s.json p.csv -o OUT.svg", "generate": "generate rose -o OUT.csv",
+           "assemble": "assemble p.csv -n 8 -q -o OUT.sys", "merge": "merge s.sys s.sys -q -o OUT.sys", "solve": "solve s.sys -q -o OUT.json"}
 # one command line of every verb that prints
 PRINTERS = ["", "--help", "--version", "fit --help", "methods", "info p.csv", "info s.json", "compare s.json p.csv", "generate rose",
             "evaluate s.json --samples 9", "plot s.json", "fit p.csv -n 8", "fit p.csv -n 8 -q -o -", "fit p.csv -n 8 -q --summary -",
-            "reproduce epia"]
+            "reproduce epia", "info s.sys", "solve s.sys -o -"]
 
 
 class Places(Files):
@@ -187,7 +189,7 @@ class Places(Files):
                 self.good(*words, preexec_fn=lambda: os.umask(0o077))
                 self.assertEqual(stat.S_IMODE(path.stat().st_mode), 0o604)
                 self.assertEqual((path.stat().st_uid, path.stat().st_gid), owner)
-                self.assertNotEqual(path.read_text(), "old")
+                self.assertNotEqual(path.read_bytes(), b"old")
 
     def test_places_that_cannot_be_written(self):
         (self.folder / "dir.json").mkdir()
