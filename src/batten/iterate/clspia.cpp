@@ -53,16 +53,15 @@ void Clspia::choose_inner_step() {
 }
 
 void Clspia::choose_outer_step() {
-    std::unique_ptr<Factorization> normal;
     try {
-        normal = factorize(system_);
+        normal_ = factorize(system_);
     } catch (const SolverError&) {
         throw InvalidInput("clspia: the samples that are not interpolated do not determine every "
                            "control point; use method direct");
     }
-    schur_ = std::make_unique<SchurComplement>(*normal, constraints_, system_.size());
+    schur_ = std::make_unique<SchurComplement>(*normal_, constraints_, system_.size());
     setup_products_ += constraints_.size(); // a solve each
-    beta_max_ = schur_->eigenvalues().largest;
+    beta_max_ = schur_->largest_eigenvalue();
     if (given_.mu)
         check_setting("clspia", "mu", *given_.mu, {.low = 0, .high = 2 / beta_max_},
                       "its region of convergence");

@@ -73,6 +73,7 @@ class Clspia : public Method {
     Constraints constraints_;
     double exactness_;
     ClspiaSettings given_;
+    std::unique_ptr<Factorization> normal_;
     std::unique_ptr<SchurComplement> schur_; ///< S
     double beta_max_ = 0;
     double gamma_max_ = 0;

@@ -1,36 +1,16 @@
 #include <batten/solve/banded_qr.hpp>
 
 #include <batten/core/core.hpp>
+#include <batten/solve/tail_norm.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <utility>
 
 namespace batten {
 
 namespace {
-
-/// A rotation of two numbers that leaves nothing of the second; none where both have decayed so far
-/// from row to row that their squares are nothing: then the second may be dropped.
-struct Rotation {
-    Extended cosine = 1;
-    Extended sine = 0;
-
-    Rotation(Extended kept, Extended gone) {
-        const Extended squares = kept * kept + gone * gone;
-        if (squares < std::numeric_limits<Extended>::min()) return;
-        const Extended length = std::sqrt(squares);
-        cosine = kept / length;
-        sine = gone / length;
-    }
-    void apply(Extended& a, Extended& b) const {
-        const Extended kept = cosine * a + sine * b;
-        b = cosine * b - sine * a;
-        a = kept;
-    }
-};
 
 /// The entries of one strand along the axis.
 struct Strand {
@@ -193,42 +173,25 @@ void BandedQr::solve_transposed(Extended* x, AxisLayout layout) const {
     });
 }
 
+void BandedQr::for_each_product(FunctionRef<void(Index, Index, Extended)> visit) const {
+    for (Index i = 0; i < size_; ++i)
+        visit_row(i, [&](Index j, Extended a) {
+            visit_row(i, [&](Index k, Extended b) { visit(j, k, a * b); });
+        });
+}
+
 double BandedQr::squares_of(const BandedQr& rows) const {
-    constexpr Index together = 8;
-    const std::vector<double> factor(factor_.begin(), factor_.end());
     const Index inner = inner_size();
-    std::vector<double> sums(static_cast<std::size_t>(block_count(size_, together)));
-    for_each_block(size_, together, [&](const Block& block) {
-        // y R = row, forwards; entries of the rows that are taken together lie side by side
-        const Index first = std::min(block.begin, inner);
-        std::vector<std::array<double, together>> y(static_cast<std::size_t>(size_ - first));
-        for (Index i = block.begin; i < block.end; ++i)
-            rows.visit_row(i, [&](Index j, Extended value) {
-                y[static_cast<std::size_t>(j - first)][static_cast<std::size_t>(i - block.begin)] =
-                    static_cast<double>(value);
-            });
-        std::array<double, together> squares{};
-        for (Index i = first; i < size_; ++i) {
-            auto& from = y[static_cast<std::size_t>(i - first)];
-            const double* row = factor.data() + i * width_;
-            const double pivot = row[i < inner ? 0 : degree_ + 1 + i - inner];
-            for (std::size_t s = 0; s < together; ++s) {
-                from[s] /= pivot;
-                squares[s] += from[s] * from[s];
-            }
-            const auto take = [&](Index j, double value) {
-                auto& to = y[static_cast<std::size_t>(j - first)];
-                for (std::size_t s = 0; s < together; ++s) to[s] -= value * from[s];
-            };
-            for (Index k = 1; k <= degree_ && i + k < inner; ++k) take(i + k, row[k]);
-            for (Index c = std::max<Index>(0, i - inner + 1); c < border_; ++c)
-                take(inner + c, row[degree_ + 1 + c]);
-        }
-        for (double x : squares) sums[static_cast<std::size_t>(block.index)] += x;
-    });
-    double sum = 0;
-    for (double x : sums) sum += x;
-    return sum;
+    TailNorm tail(degree_, border_);
+    for (Index c = border_; c-- > 0;) tail.prepend_border(c, entries(inner + c) + degree_ + 1);
+    Extended sum = 0;
+    for (Index i = size_; i-- > inner;)
+        sum += tail.squares_of_border(rows.entries(i) + degree_ + 1);
+    for (Index i = inner; i-- > 0;) {
+        sum += tail.squares_of(entries(i), rows.entries(i));
+        tail.prepend(entries(i));
+    }
+    return static_cast<double>(sum);
 }
 
 } // namespace batten

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <batten/core/function_ref.hpp>
+#include <batten/solve/rotation.hpp>
 #include <batten/system/banded_matrix.hpp>
 
 #include <algorithm>
@@ -8,10 +10,6 @@
 #include <vector>
 
 namespace batten {
-
-/// What orthogonal factors are computed in: with its 64 bits a row's digits outlast rotations
-/// against rows of much larger weight.
-using Extended = long double;
 
 /// A row of a least-squares problem along one axis: entries from column `lead` on, and those of a
 /// closed axis's last columns.
@@ -29,6 +27,8 @@ class BandedQr {
     /// Of `size` columns, rows of degree + 1 entries, and right-hand sides of so many columns.
     BandedQr(Index size, int degree, Closure closure, Index rhs_columns = 0);
 
+    Index size() const { return size_; }
+    Closure closure() const { return border_ > 0 ? Closure::closed : Closure::open; }
     /// Columns before the border.
     Index inner_size() const { return size_ - border_; }
     /// Leading column of a row of active functions, the first of which is given.
@@ -63,8 +63,10 @@ class BandedQr {
     void solve(Extended* x, AxisLayout layout) const;
     void solve_transposed(Extended* x, AxisLayout layout) const;
 
+    /// Calls `visit(row, column, value)` for numbers that add up to R^T R.
+    void for_each_product(FunctionRef<void(Index row, Index column, Extended value)> visit) const;
     /// The squared Frobenius norm of R_rows R^{-1}: of rows that are part of R's, the trace of the
-    /// matrix that makes their fitted values. Row by row from its leading column on.
+    /// matrix that makes their fitted values. O(size).
     double squares_of(const BandedQr& rows) const;
 
   private:

@@ -99,6 +99,11 @@ struct Solver {
             if (!has_rows) throw;
         }
         rows = std::make_unique<RowFactorization>(system.axes(), of, system.centre());
+        for (const BandedQr& axis : rows->axes()) axis.check();
+        constexpr double hopeless = 1e26; // of rows' condition the square: no digits are left
+        if (!(inverse_norm(system, *rows) < hopeless))
+            throw SolverError("the least-squares problem is singular: in all it determines no "
+                              "digits of some control points");
     }
     const Factorization& factors() const { return rows ? *rows : *normal; }
     PointSet solution(const NormalSystem& system) const {

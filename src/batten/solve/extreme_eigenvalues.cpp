@@ -2,6 +2,7 @@
 
 #include <batten/core/vectors.hpp>
 #include <batten/solve/banded_cholesky.hpp>
+#include <batten/solve/nested_cholesky.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -180,9 +181,41 @@ ExtremeEigenvalues extreme_eigenvalues(const BandedMatrix& m, double tolerance) 
     return e;
 }
 
+ExtremeEigenvalues scaled_eigenvalues(const NormalSystem& system, const std::vector<double>& scale,
+                                      double tolerance) {
+    constexpr double of_largest = 1e-4; // of the tolerance: steps must not pass 2 / largest
+    const VectorOperator plain = operator_of(system);
+    const VectorOperator whole = [&](Vector in, Vector& out) {
+        for (std::size_t i = 0; i < in.size(); ++i) in[i] *= scale[i];
+        plain(in, out);
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] *= scale[i];
+    };
+    if (system.size() > most_dissected(system.axes().size()) ||
+        std::ranges::find(scale, 0.0) != scale.end())
+        return lanczos(whole, system.size(), tolerance);
+    try {
+        const auto factor = factorize(system);
+        const VectorOperator inverse = [&](const Vector& in, Vector& out) {
+            PointSet b(system.size(), 1);
+            for (std::size_t i = 0; i < in.size(); ++i) b.values()[i] = in[i] / scale[i];
+            b = factor->solve(std::move(b));
+            for (std::size_t i = 0; i < in.size(); ++i) out[i] = b.values()[i] / scale[i];
+        };
+        const ExtremeEigenvalues low =
+            lanczos(inverse, system.size(), tolerance / 10, SpectrumEnds::largest);
+        const ExtremeEigenvalues high =
+            lanczos(whole, system.size(), of_largest * tolerance, SpectrumEnds::largest);
+        return {high.largest, 1 / low.largest, high.products + low.products};
+    } catch (const SolverError&) { // singular: only products see past the zeros
+        return lanczos(whole, system.size(), tolerance);
+    }
+}
+
 ExtremeEigenvalues extreme_eigenvalues(const NormalSystem& system, double tolerance) {
     const auto factors = system.factors();
-    if (factors.empty()) return lanczos(operator_of(system), system.size(), tolerance);
+    if (factors.empty())
+        return scaled_eigenvalues(
+            system, std::vector<double>(static_cast<std::size_t>(system.size()), 1.0), tolerance);
     ExtremeEigenvalues product{1, 1, 0};
     for (const BandedMatrix* gram : factors) {
         const ExtremeEigenvalues e =

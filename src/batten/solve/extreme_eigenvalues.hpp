@@ -33,6 +33,11 @@ ExtremeEigenvalues lanczos(const VectorOperator& matrix, Index size, double tole
 /// Those of a banded matrix, sharpened where `tolerance` is small.
 ExtremeEigenvalues extreme_eigenvalues(const BandedMatrix& matrix, double tolerance);
 
+/// Those of diag(c) A^T D A diag(c) for the numbers c of a system without factors: the smallest by
+/// its inverse, where that is cheaper and there is one.
+ExtremeEigenvalues scaled_eigenvalues(const NormalSystem& system, const std::vector<double>& scale,
+                                      double tolerance);
+
 /// Those of A^T D A: of each banded factor, multiplied, where the system has factors.
 ExtremeEigenvalues extreme_eigenvalues(const NormalSystem& system, double tolerance = 1e-2);
 

@@ -13,19 +13,31 @@ class AxisFactorization : public Factorization {
     AxisFactorization(const std::vector<const BandedMatrix*>& factors, const GridIndex& controls)
         : controls_(controls) {
         for (const BandedMatrix* factor : factors) axes_.emplace_back(*factor);
+        if (factors.size() == 1) band_ = *factors[0];
     }
     PointSet solve(PointSet b) const override {
         for (std::size_t k = axes_.size(); k-- > 0;)
             axes_[k].solve(b.data(), along(controls_, k, b.dim()));
         return b;
     }
+    std::unique_ptr<BandedSaddle> bordered(const Constraints& constraints) const override {
+        if (axes_.size() != 1) return nullptr;
+        return std::make_unique<BandedSaddle>(
+            band_.size(), band_.closure(),
+            [&](BandedSaddle::Visit visit) { band_.for_each_entry(visit); }, constraints);
+    }
 
   private:
     std::vector<BandedCholesky> axes_;
+    BandedMatrix band_; // of the only axis
     GridIndex controls_;
 };
 
 } // namespace
+
+std::unique_ptr<BandedSaddle> Factorization::bordered(const Constraints&) const {
+    return nullptr;
+}
 
 std::unique_ptr<Factorization> factorize(const NormalSystem& system) {
     const auto factors = system.factors();

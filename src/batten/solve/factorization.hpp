@@ -1,5 +1,6 @@
 #pragma once
 
+#include <batten/solve/banded_saddle.hpp>
 #include <batten/system/normal_system.hpp>
 
 #include <memory>
@@ -15,6 +16,9 @@ class Factorization {
     Factorization& operator=(const Factorization&) = delete;
     /// (A^T D A)^{-1} b for b (N x dim).
     virtual PointSet solve(PointSet b) const = 0;
+    /// The saddle point's equations with these constraints, as one band; null where what is
+    /// factored is none along one axis.
+    virtual std::unique_ptr<BandedSaddle> bordered(const Constraints& constraints) const;
 };
 
 /// Banded Cholesky axis by axis where the system has factors, else by nested dissection of the net.

@@ -78,4 +78,11 @@ PointSet RowFactorization::solve(PointSet b) const {
     return rounded(x, b.dim());
 }
 
+std::unique_ptr<BandedSaddle> RowFactorization::bordered(const Constraints& constraints) const {
+    if (axes_.size() != 1) return nullptr;
+    return std::make_unique<BandedSaddle>(
+        axes_[0].size(), axes_[0].closure(),
+        [&](BandedSaddle::Visit visit) { axes_[0].for_each_product(visit); }, constraints);
+}
+
 } // namespace batten

@@ -26,6 +26,7 @@ class RowFactorization : public Factorization {
     /// them.
     PointSet solution() const;
     PointSet solve(PointSet b) const override;
+    std::unique_ptr<BandedSaddle> bordered(const Constraints& constraints) const override;
 
     const std::vector<AxisRows>& rows() const { return rows_; }
     const std::vector<BandedQr>& axes() const { return axes_; }

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <batten/solve/extreme_eigenvalues.hpp>
 #include <batten/solve/factorization.hpp>
 #include <batten/system/constraints.hpp>
 
 namespace batten {
 
-/// C (A^T D A)^{-1} C^T, the small dense matrix (k x k) of the multipliers' equations.
+/// S = C (A^T D A)^{-1} C^T, the matrix (k x k) of the multipliers' equations: along one axis in
+/// the saddle point's band, else dense. What it is made of must outlive it.
 class SchurComplement {
   public:
     SchurComplement(const Factorization& normal, const Constraints& constraints, Index controls);
@@ -16,11 +16,19 @@ class SchurComplement {
 
     /// S^{-1} b for b (k x dim).
     PointSet solve(const PointSet& b) const;
-    ExtremeEigenvalues eigenvalues() const;
+    /// The largest eigenvalue, to 1e-9 of it or, of many constraints along one axis, 1e-3.
+    double largest_eigenvalue() const;
 
   private:
     struct Matrix;
-    std::unique_ptr<Matrix> matrix_;
+    /// S x for x (k x dim).
+    PointSet apply(const PointSet& x) const;
+
+    const Factorization& normal_;
+    const Constraints& constraints_;
+    Index controls_;
+    std::unique_ptr<BandedSaddle> band_;
+    std::unique_ptr<Matrix> matrix_; ///< where there is no band
 };
 
 /// The control points moved, as little as the normal equations weigh it, until what they lack of

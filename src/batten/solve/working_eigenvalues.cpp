@@ -61,16 +61,7 @@ std::vector<double> inverse_roots(std::vector<double> sums) {
 ExtremeEigenvalues row_scaled_extremes(const NormalSystem& system, const std::vector<double>& sums,
                                        double tolerance) {
     const auto factors = system.factors();
-    if (factors.empty()) {
-        const std::vector<double> root = inverse_roots(sums);
-        const VectorOperator plain = operator_of(system);
-        const VectorOperator scaled = [&](std::vector<double> in, std::vector<double>& out) {
-            for (std::size_t i = 0; i < in.size(); ++i) in[i] *= root[i];
-            plain(in, out);
-            for (std::size_t i = 0; i < out.size(); ++i) out[i] *= root[i];
-        };
-        return lanczos(scaled, system.size(), tolerance);
-    }
+    if (factors.empty()) return scaled_eigenvalues(system, inverse_roots(sums), tolerance);
     ExtremeEigenvalues product{1, 1};
     for (const BandedMatrix* gram : factors) {
         const std::vector<double> root = inverse_roots(row_sums(*gram));

@@ -4,6 +4,7 @@
 #include <batten/core/vectors.hpp>
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,17 @@ void Constraints::add_direction(const std::vector<KnotVector>& axes,
 
 void Constraints::fix(Index control, std::span<const double> value, std::string name) {
     add_row({{control, 1.0}}, 1, value, std::move(name));
+}
+
+void Constraints::add_parts(std::span<const std::pair<Index, double>> parts,
+                            std::span<const double> value, std::string name) {
+    std::vector<Entry> row;
+    double sum = 0;
+    for (const auto& [control, part] : parts) {
+        row.push_back({control, part});
+        sum += part;
+    }
+    add_row(std::move(row), sum, value, std::move(name));
 }
 
 Constraints Constraints::with_lengths(std::span<const double> lengths) const {
@@ -95,7 +107,27 @@ Constraints Constraints::centred(const std::vector<double>& centre) const {
     return result;
 }
 
+bool Constraints::certainly_independent(Index controls) const {
+    constexpr double enough = 1e-8; // squared distance of a unit row from the span of those before
+    if (size() > controls) return false;
+    std::vector<double> squares(static_cast<std::size_t>(size()), 0);
+    for_each_entry([&](Index k, Index, double value) {
+        squares[static_cast<std::size_t>(k)] += value * value;
+    });
+    std::vector<Eigen::Triplet<double>> entries;
+    for_each_entry([&](Index k, Index control, double value) {
+        entries.emplace_back(k, control, value / std::sqrt(squares[static_cast<std::size_t>(k)]));
+    });
+    Eigen::SparseMatrix<double> rows(size(), controls);
+    rows.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SparseMatrix<double> products =
+        rows * Eigen::SparseMatrix<double>(rows.transpose());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(products);
+    return factor.info() == Eigen::Success && factor.vectorD().minCoeff() > enough;
+}
+
 Constraints Constraints::independent(Index controls) const {
+    if (certainly_independent(controls)) return *this;
     Constraints result(values_.dim());
     // rows orthonormalised one by one; a row that vanishes depends on those before it
     using Vector = Eigen::SparseVector<double>;

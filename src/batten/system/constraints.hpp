@@ -4,6 +4,7 @@
 #include <batten/spline/spline.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace batten {
@@ -34,6 +35,9 @@ class Constraints {
                        std::string name);
     /// Adds: the free control point of the given index is `value`.
     void fix(Index control, std::span<const double> value, std::string name);
+    /// Adds: parts of control points, by their indices, add up to `value`.
+    void add_parts(std::span<const std::pair<Index, double>> parts, std::span<const double> value,
+                   std::string name);
     /// Rows whose value has a direction only.
     const std::vector<Index>& directions() const { return directions_; }
     /// The same constraints with lengths given to the directions, in order: none is left free.
@@ -43,6 +47,13 @@ class Constraints {
     /// lack is then as long as control points are away.
     Constraints balanced() const;
 
+    /// Calls `visit(row, control, value)` for the entries of C.
+    template <class Visit>
+    void for_each_entry(Visit visit) const {
+        for (Index k = 0; k < size(); ++k)
+            for (const Entry& entry : rows_[static_cast<std::size_t>(k)])
+                visit(k, entry.control, entry.value);
+    }
     /// C P: (k x dim).
     PointSet apply(const PointSet& control) const;
     /// C^T y: (n x dim) for n control points.
@@ -53,10 +64,12 @@ class Constraints {
 
     /// The constraints without those that follow from the others. Throws ConstraintConflict when
     /// more than `controls` are left, or some contradict each other: then a smallest such set is
-    /// named.
+    /// named. Where a sparse factor of C C^T shows that none does, that is all it costs.
     Constraints independent(Index controls) const;
 
   private:
+    /// Whether rows of unit length are certainly independent, by Cholesky's factor of C C^T.
+    bool certainly_independent(Index controls) const;
     struct Entry {
         Index control;
         double value;
