@@ -122,11 +122,17 @@ class Signals(InFolder):
     def test_work_of_every_kind(self):
         subprocess.run([BATTEN, "generate", "rose", "--samples", "200000", "-o", "big.csv"], cwd=self.folder, check=True)
         subprocess.run([BATTEN, "generate", "peaks", "--samples", "500x500", "-o", "grid.npy"], cwd=self.folder, check=True)
+        subprocess.run([BATTEN, "fit", "grid.npy", "-n", "60x60", "-q", "-o", "net.json"], cwd=self.folder, check=True)
+        rng = np.random.default_rng(1)
+        np.save(self.folder / "cloud.npy", rng.random((200000, 3)))
+        t = np.linspace(0, 3, 20000)
+        np.savetxt(self.folder / "noisy.csv", np.c_[t, np.sin(t)] + 1e-3 * rng.standard_normal((20000, 2)), delimiter=",")
         for line in ("fit big.csv -n 90000 -m lspia --stop-gradient 1e-300 --max-iterations 100000000 -o old.json",
                      "fit big.csv -t 1e-10 -o old.json", "fit grid.npy -t 1e-9 -o old.json -o new.step",
                      "fit grid.npy -n 200x200 -m epia --stop-deviation 1e-300 --max-iterations 100000000 -o old.json",
                      "evaluate s.json --samples 20000000 -o new.csv", "generate rose --samples 20000000 -o new.csv",
-                     "compare s.json big.csv", "reproduce all"):
+                     "compare s.json big.csv", "compare net.json grid.npy", "fit grid.npy -n 400x400 --smooth auto -o old.json",
+                     "fit cloud.npy --project xy -n 150x150 --smooth auto -o old.json", "fit noisy.csv -m epia -t 1e-9 -o old.json", "reproduce all"):
             for number in (signal.SIGINT, signal.SIGTERM):
                 with self.subTest(line, number=number):
                     before = self.state()
