@@ -56,43 +56,56 @@ bool turns_around(const PointSet& p, Index first, Index count) {
 }
 
 constexpr double loop_excess = 2;
+constexpr Index steps = 5; // from a sample to the next
+constexpr Index pairs_at_once = 1024;
 
-} // namespace
+/// Samples in order with a curve's parameters and tolerances, and what it does between them.
+struct Run {
+    const Spline& curve;
+    const Points& q;
+    const std::vector<double>& parameters;
+    const std::vector<double>& tolerance;
 
-BetweenSamples check_between(const Spline& curve, const Points& q,
-                             const std::vector<double>& parameters,
-                             const std::vector<double>& tolerance) {
-    constexpr int steps = 5;
-    const bool closed = curve.axis(0).closed();
-    const Index m = q.size();
-    PointSet at((closed ? m : m - 1) * steps + 1, 1);
-    for (Index i = 0; i + 1 < at.size(); ++i) {
-        const Index k = i / steps;
-        const double from = parameters[static_cast<std::size_t>(k)];
-        const double to = k + 1 < m ? parameters[static_cast<std::size_t>(k + 1)]
-                                    : parameters[0] + curve.axis(0).length();
-        at(i, 0) = from + (to - from) * static_cast<double>(i % steps) / steps;
+    bool closed() const { return curve.axis(0).closed(); }
+    Index pairs() const { return closed() ? q.size() : q.size() - 1; }
+
+    /// Parameter of sample `i`, of a closed curve's first one turn later, too.
+    double parameter(Index i) const {
+        return i < q.size() ? parameters[static_cast<std::size_t>(i)]
+                            : parameters[0] + curve.axis(0).length();
     }
-    at(at.size() - 1, 0) = closed ? parameters[0] + curve.axis(0).length() : parameters.back();
-    const PointSet points = evaluate(curve, at);
-    BetweenSamples result;
-    for (Index i = 0; i * steps + 1 < at.size(); ++i) {
+
+    /// The line of points between the samples [begin, end], `steps` to a pair.
+    PointSet line(Index begin, Index end) const {
+        PointSet at((end - begin) * steps + 1, 1);
+        for (Index k = 0; k + 1 < at.size(); ++k) {
+            const double from = parameter(begin + k / steps);
+            const double to = parameter(begin + k / steps + 1);
+            at(k, 0) = from + (to - from) * static_cast<double>(k % steps) / steps;
+        }
+        at(at.size() - 1, 0) = parameter(end);
+        return evaluate(curve, at);
+    }
+
+    /// What the line does from point `first` on between sample i and the next.
+    void check(const PointSet& line, Index first, Index i, BetweenSamples& result) const {
+        const Index m = q.size();
         const Index j = (i + 1) % m;
         const double t = std::max(tolerance[static_cast<std::size_t>(i)],
                                   tolerance[static_cast<std::size_t>(j)]);
         double arc = 0;
-        if (closed || i > 0) arc = std::max(arc, sagitta(q[(i + m - 1) % m], q[i], q[j]));
-        if (closed || i + 2 < m) arc = std::max(arc, sagitta(q[(j + 1) % m], q[j], q[i]));
+        if (closed() || i > 0) arc = std::max(arc, sagitta(q[(i + m - 1) % m], q[i], q[j]));
+        if (closed() || i + 2 < m) arc = std::max(arc, sagitta(q[(j + 1) % m], q[j], q[i]));
         const double allowed = std::max(2 * t, arc + t);
         double stray = 0;
         double length = 0;
-        for (Index k = 0; k < steps; ++k) {
-            stray = std::max(stray, off_segment(points[i * steps + k], q[i], q[j]));
-            length += distance(points[i * steps + k], points[i * steps + k + 1]);
+        for (Index k = first; k < first + steps; ++k) {
+            stray = std::max(stray, off_segment(line[k], q[i], q[j]));
+            length += distance(line[k], line[k + 1]);
         }
         double excess =
             std::max(stray / allowed, length / (1.2 * distance(q[i], q[j]) + 4 * t + 2 * arc));
-        if (q.dim() == 2 && turns_around(points, i * steps, steps)) {
+        if (q.dim() == 2 && turns_around(line, first, steps)) {
             ++result.loops;
             excess = std::max(excess, loop_excess);
         }
@@ -100,6 +113,29 @@ BetweenSamples check_between(const Spline& curve, const Points& q,
             result.excess = excess;
             result.worst_sample = i;
         }
+    }
+};
+
+} // namespace
+
+BetweenSamples check_between(const Spline& curve, const Points& q,
+                             const std::vector<double>& parameters,
+                             const std::vector<double>& tolerance) {
+    const Run run{curve, q, parameters, tolerance};
+    std::vector<BetweenSamples> parts(
+        static_cast<std::size_t>(block_count(run.pairs(), pairs_at_once)));
+    for_each_block(run.pairs(), pairs_at_once, [&](const Block& block) {
+        const PointSet line = run.line(block.begin, block.end);
+        for (Index i = block.begin; i < block.end; ++i)
+            run.check(line, (i - block.begin) * steps, i,
+                      parts[static_cast<std::size_t>(block.index)]);
+    });
+    BetweenSamples result;
+    for (const BetweenSamples& part : parts) {
+        result.loops += part.loops;
+        if (!(part.excess > result.excess)) continue;
+        result.excess = part.excess;
+        result.worst_sample = part.worst_sample;
     }
     result.good = result.excess <= 1;
     return result;

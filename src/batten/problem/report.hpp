@@ -14,8 +14,8 @@ struct HistoryEntry {
     Index iteration;
     double gradient_norm;
     double largest_move;
-    double max_deviation;    ///< of a sample at its parameter
-    double constraint_error; ///< sum of squares; 0 without constraints
+    double max_deviation;     ///< of a sample at its parameter
+    double constraint_error;  ///< sum of squares; 0 without constraints
     Index control_points = 0; ///< in all, where an iteration changes their number; else 0
     double largest_mean = 0;  ///< longest mean residual of a group, e_c of EPIA; else 0
 };
@@ -77,9 +77,11 @@ struct FitReport {
     double between_samples = 0; ///< part of what is allowed between samples that is used: at most 1
                                 ///< is good; 0 where not checked
     std::vector<std::pair<std::string, Index>>
-        stages;           ///< control points after each stage of a fit to a tolerance
-    double smoothing = 0; ///< lambda, where smoothness counts; else 0
-    double freedom = 0;   ///< degrees of freedom that cross-validation left; else 0
+        stages;                 ///< control points after each stage of a fit to a tolerance
+    Index searched_samples = 0; ///< that a fit to a tolerance went by; 0: by all
+    Index passes = 0;           ///< over all samples, to check what was found by some; 0: none
+    double smoothing = 0;       ///< lambda, where smoothness counts; else 0
+    double freedom = 0;         ///< degrees of freedom that cross-validation left; else 0
     std::vector<Index>
         set_aside;        ///< samples found to be outliers: not fitted, not in the deviation
     double data_size = 0; ///< diagonal of the samples' box, the greatest double at most

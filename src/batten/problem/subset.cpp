@@ -27,6 +27,10 @@ Subset Subset::without(const std::vector<Index>& left_out, Index count) {
     return {std::move(kept), count};
 }
 
+Subset Subset::keeping(std::vector<Index> kept, Index count) {
+    return {std::move(kept), count};
+}
+
 Index Subset::place(Index i) const {
     return std::ranges::lower_bound(kept_, i) - kept_.begin();
 }

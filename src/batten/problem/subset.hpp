@@ -12,6 +12,8 @@ class Subset {
   public:
     /// All of `count` samples but the ascending `left_out`.
     static Subset without(const std::vector<Index>& left_out, Index count);
+    /// The ascending `kept` of `count` samples.
+    static Subset keeping(std::vector<Index> kept, Index count);
 
     Index size() const { return static_cast<Index>(kept_.size()); }
     bool whole() const { return size() == count_; }

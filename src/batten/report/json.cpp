@@ -88,6 +88,10 @@ void add_tolerance(Json& json, const FitReport& r) {
     if (r.between_samples > 0) json["between_samples"] = number(r.between_samples);
     json["stages"] = Json::object();
     for (const auto& [stage, count] : r.stages) json["stages"][stage] = count;
+    if (r.searched_samples > 0) {
+        json["searched_samples"] = r.searched_samples;
+        json["passes"] = r.passes;
+    }
 }
 
 } // namespace

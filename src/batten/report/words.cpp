@@ -68,6 +68,9 @@ Lines closeness(const FitReport& r) {
     for (const auto& [stage, count] : r.stages)
         counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", stage, count);
     if (!counts.empty()) lines.emplace_back("control", counts);
+    if (r.searched_samples > 0)
+        lines.emplace_back("search", fmt::format("by {} samples, checked by all {} times",
+                                                 r.searched_samples, r.passes));
     return lines;
 }
 

@@ -5,6 +5,7 @@
 #include <batten/samples/samples.hpp>
 #include <batten/search/curve_calmer.hpp>
 #include <batten/search/curve_corners.hpp>
+#include <batten/search/curve_exchange.hpp>
 #include <batten/search/curve_knots.hpp>
 #include <batten/search/curve_rising.hpp>
 #include <batten/search/curve_verdict.hpp>
@@ -28,7 +29,8 @@ CurveWithin refined_with_corners(CurveTask& task, const ToleranceOptions& option
     CurveWithin best = refined(task, most);
     if (options.corners == Corners::automatic) {
         CurveTask cornered = task;
-        cornered.corners = spaced_corners(find_corners(task.samples.points, task.closure), task);
+        cornered.corners = spaced_corners(
+            task.sharp ? *task.sharp : find_corners(task.samples.points, task.closure), task);
         const bool allowed =
             !cornered.corners.empty() && first_knots(cornered).free_count() <= most;
         if (allowed) {
@@ -52,7 +54,7 @@ CurveWithin refined_with_corners(CurveTask& task, const ToleranceOptions& option
 
 /// The fewest control points from one search: refined and thinned out, or risen.
 CurveWithin refined_and_thinned(CurveTask& task, const ToleranceOptions& options, Index most) {
-    const bool few = task.samples.size() <= few_samples;
+    const bool few = samples_in_all(task) <= few_samples;
     CurveWithin best = refined_with_corners(task, options, most);
     if (few) rise_instead(task, most, best);
     // what is wild is searched again before anything is taken out
@@ -89,7 +91,7 @@ Index squeeze_tighter(CurveTask& task, std::vector<double> tolerance,
 void squeeze_further(CurveTask& task, const ToleranceOptions& options, Index most,
                      CurveWithin& best) {
     const auto worthwhile = [&] {
-        return best.met && controls(best) <= few_enough && task.samples.size() <= squeezed_samples;
+        return best.met && controls(best) <= few_enough && samples_in_all(task) <= squeezed_samples;
     };
     if (!worthwhile()) return;
     squeeze(task, best);
@@ -142,7 +144,7 @@ class WithoutBends {
           found_(found),
           height_(visible_height(task, tightest(task))),
           shown_(shown_inflections(task, height_)),
-          quick_(task.samples.size() <= squeezed_samples),
+          quick_(samples_in_all(task) <= squeezed_samples),
           before_(controls(found)),
           worth_(std::min(most, before_ + std::max<Index>(before_ / 4, 4))),
           refining_(std::min(most, 2 * worth_ + 10)),
@@ -239,7 +241,7 @@ CurveWithin smooth_curve(const CurveTask& task, double noise, Index most) {
     looser.fixed = fixed_samples(task);
     const double extreme = noise * (1 + std::sqrt(2 * std::log(task.samples.size())));
     for (double& t : looser.tolerance) t = std::max(t, extreme);
-    CurveWithin smooth = refined(looser, most);
+    CurveWithin smooth = by_exchange(looser, most, refined);
     if (smooth.met && task.samples.size() <= few_samples)
         thin_out(looser, smooth); // a thousand more samples per knot: nothing to gain
     smooth.trial = rescaled(smooth.trial, looser.tolerance, task.tolerance);

@@ -3,6 +3,7 @@
 #include <batten/basis/place_knots.hpp>
 #include <batten/measure/between_samples.hpp>
 #include <batten/search/curve_knots.hpp>
+#include <batten/search/search.hpp>
 #include <batten/system/collocation.hpp>
 
 #include <algorithm>
@@ -172,7 +173,7 @@ CurveWithin refined(const CurveTask& task, Index most) {
             result.met = met;
             least_straying = strays;
         }
-        if ((result.met && least_straying <= 1) || task.parameters.size() > 5000) break;
+        if ((result.met && least_straying <= 1) || samples_in_all(task) > few_samples) break;
     }
     result.stages.emplace_back("refined", result.trial.knots.free_count());
     return result;

@@ -1,9 +1,11 @@
 #include <batten/core/stopwatch.hpp>
 #include <batten/measure/deviation.hpp>
 #include <batten/problem/subset.hpp>
+#include <batten/samples/corners.hpp>
 #include <batten/samples/noise.hpp>
 #include <batten/search/curve_corners.hpp>
 #include <batten/search/curve_direction.hpp>
+#include <batten/search/curve_exchange.hpp>
 #include <batten/search/curve_fewest.hpp>
 #include <batten/search/curve_missed.hpp>
 #include <batten/search/curve_verdict.hpp>
@@ -121,7 +123,10 @@ CurveOutcome searched(CurveTask& task, const ToleranceOptions& options, Index mo
     const bool many = free && q.size() > 1000 && noise_bound(q) > tolerance;
     if (many) outcome.noise = residual_noise(q);
     if (outcome.noise > tolerance && finds_smooth(task, most, outcome)) return outcome;
-    outcome.found = fewest_knots(task, options, most);
+    if (options.corners == Corners::automatic) task.sharp = find_corners(q, task.closure);
+    outcome.found = by_exchange(task, most, [&](CurveTask& some, Index fewest) {
+        return fewest_knots(some, options, fewest);
+    });
     const bool met = outcome.found.met;
     const bool near = near_interpolation(outcome.found.trial.knots.free_count(), q.size());
     if (!many && (near || !met)) outcome.noise = residual_noise(q);
@@ -245,7 +250,7 @@ Fitted curve_within(const Problem& given) {
     const Parameters parameters{{found.trial.parameters}, {}};
     std::vector<double> away = deviations(spline, samples, parameters, DeviationKind::distance);
     // closest points may be nearer than those that the search had
-    if (outcome.why != NotMet::noise && within(away, task.tolerance) &&
+    if (!found.met && outcome.why != NotMet::noise && within(away, task.tolerance) &&
         acceptable(task, found.trial))
         found.met = true;
     Fitted result{spline, parameters, judged(task, outcome, limit, *std::ranges::max_element(away)),

@@ -1,6 +1,7 @@
 #include <batten/search/curve_trial.hpp>
 
 #include <batten/basis/place_knots.hpp>
+#include <batten/core/vectors.hpp>
 #include <batten/problem/held.hpp>
 #include <batten/search/curve_across.hpp>
 #include <batten/shape/polygon.hpp>
@@ -15,6 +16,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 
 namespace batten {
 
@@ -54,51 +56,87 @@ void mark_held(const CurveTask& task, CurveTrial& trial) {
 
 constexpr double misshapen = 1.25; // stands for a distance that is not reached
 
-/// One Gauss-Newton step of each sample's parameter towards its closest point, kept in order.
+constexpr Index samples_at_once = 4096;
+
+/// The Gauss-Newton step from a place of the curve towards its closest point to a sample; 0 where
+/// the curve stands still.
+double step_towards(const CurvePoint& at, std::span<const double> sample) {
+    double slope = 0;
+    double curvature = 0;
+    double bend = 0;
+    for (std::size_t d = 0; d < sample.size(); ++d) {
+        const double gap = sample[d] - at.point[d];
+        slope += gap * at.first[d];
+        curvature += at.first[d] * at.first[d];
+        bend += gap * at.second[d];
+    }
+    if (!(curvature > 0)) return 0;
+    const double hessian = curvature - bend;
+    return slope / (hessian > 0.3 * curvature ? hessian : curvature);
+}
+
+double distance_to(const CurvePoint& at, std::span<const double> sample) {
+    return distance(sample, std::span(at.point).first(sample.size()));
+}
+
+/// One step of each sample's parameter towards its closest point, kept in order.
 void correct_parameters(const CurveTask& task, const CurvePieces& pieces, CurveTrial& trial) {
     const std::vector<double> old = trial.parameters;
     std::vector<double>& t = trial.parameters;
     const std::size_t m = t.size();
     const bool open = task.closure == Closure::open;
-    for (std::size_t i = 0; i < m; ++i) {
-        if (parameter_stays(task, static_cast<Index>(i))) continue;
-        const CurvePoint at = pieces(old[i]);
-        double slope = 0;
-        double curvature = 0;
-        double bend = 0;
-        for (Index d = 0; d < task.samples.dim(); ++d) {
-            const auto k = static_cast<std::size_t>(d);
-            const double gap = task.samples.points(static_cast<Index>(i), d) - at.point[k];
-            slope += gap * at.first[k];
-            curvature += at.first[k] * at.first[k];
-            bend += gap * at.second[k];
+    for_each_block(task.samples.size(), samples_at_once, [&](const Block& block) {
+        for (Index k = block.begin; k < block.end; ++k) {
+            if (parameter_stays(task, k)) continue;
+            const auto i = static_cast<std::size_t>(k);
+            const double step = step_towards(pieces(old[i]), task.samples.points[k]);
+            const double low =
+                i > 0 ? (old[i - 1] + old[i]) / 2 : (open ? old[i] : trial.knots.begin());
+            const double high =
+                i + 1 < m ? (old[i] + old[i + 1]) / 2 : (open ? old[i] : trial.knots.end());
+            t[i] = std::clamp(old[i] + step, std::min(low, old[i]), std::max(high, old[i]));
         }
-        if (!(curvature > 0)) continue;
-        const double hessian = curvature - bend;
-        const double step = slope / (hessian > 0.3 * curvature ? hessian : curvature);
-        const double low =
-            i > 0 ? (old[i - 1] + old[i]) / 2 : (open ? old[i] : trial.knots.begin());
-        const double high =
-            i + 1 < m ? (old[i] + old[i + 1]) / 2 : (open ? old[i] : trial.knots.end());
-        t[i] = std::clamp(old[i] + step, std::min(low, old[i]), std::max(high, old[i]));
-    }
+    });
+}
+
+/// The largest of the ratios, of a trial whose shape is not kept more than 1.
+void judge(const CurveTask& task, CurveTrial& trial) {
+    trial.worst = 0;
+    for (double r : trial.ratio) trial.worst = std::max(trial.worst, r);
+    if (!shape_kept(task, trial)) trial.worst = std::max(trial.worst, misshapen);
+    if (!std::isfinite(trial.worst)) trial.worst = std::numeric_limits<double>::infinity();
 }
 
 void measure(const CurveTask& task, const CurvePieces& pieces, CurveTrial& trial) {
-    trial.worst = 0;
-    for (std::size_t i = 0; i < trial.parameters.size(); ++i) {
-        const CurvePoint at = pieces(trial.parameters[i]);
-        double square = 0;
-        for (Index d = 0; d < task.samples.dim(); ++d) {
-            const double gap = task.samples.points(static_cast<Index>(i), d) -
-                               at.point[static_cast<std::size_t>(d)];
-            square += gap * gap;
+    for_each_block(task.samples.size(), samples_at_once, [&](const Block& block) {
+        for (Index k = block.begin; k < block.end; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            trial.ratio[i] = distance_to(pieces(trial.parameters[i]), task.samples.points[k]) /
+                             task.tolerance[i];
         }
-        trial.ratio[i] = std::sqrt(square) / task.tolerance[i];
-        trial.worst = std::max(trial.worst, trial.ratio[i]);
-    }
-    if (!shape_kept(task, trial)) trial.worst = std::max(trial.worst, misshapen);
-    if (!std::isfinite(trial.worst)) trial.worst = std::numeric_limits<double>::infinity();
+    });
+    judge(task, trial);
+}
+
+/// Gives samples out of tolerance the distance of a place beside theirs, nearer than their
+/// neighbours would let them come.
+void measure_beside(const CurveTask& task, const CurvePieces& pieces, CurveTrial& trial) {
+    constexpr int most_steps = 12;
+    for_each_block(task.samples.size(), samples_at_once, [&](const Block& block) {
+        for (Index k = block.begin; k < block.end; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            if (trial.ratio[i] <= 1 || parameter_stays(task, k)) continue;
+            double t = trial.parameters[i];
+            for (int step = 0; step < most_steps && trial.ratio[i] > 1; ++step) {
+                t = std::clamp(t + step_towards(pieces(t), task.samples.points[k]),
+                               trial.knots.begin(), trial.knots.end());
+                trial.ratio[i] =
+                    std::min(trial.ratio[i],
+                             distance_to(pieces(t), task.samples.points[k]) / task.tolerance[i]);
+            }
+        }
+    });
+    judge(task, trial);
 }
 
 /// Lawson's iteration, damped: a sample's weight follows its part of the largest error.
@@ -146,6 +184,14 @@ void shift_knots(const CurveTask& task, CurveTrial& trial) {
 }
 
 } // namespace
+
+void follow(const CurveTask& task, CurveTrial& trial, int corrections) {
+    const CurvePieces pieces(trial.knots, trial.control);
+    trial.ratio.resize(trial.parameters.size());
+    for (int k = 0; k < corrections; ++k) correct_parameters(task, pieces, trial);
+    measure(task, pieces, trial);
+    if (trial.worst > 1) measure_beside(task, pieces, trial);
+}
 
 bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift, Effort effort) {
     constexpr int most_idle = 8; // rounds in a row that do not bring it nearer

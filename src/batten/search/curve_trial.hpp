@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,11 @@ struct CurveTask {
     int seam_continuity = max_degree;
     /// Whether C1 or more was asked for: then the seam is no corner.
     bool seam_stated = false;
+    /// Samples where the direction jumps, as all show it whose part these are; unset: not known
+    /// beforehand.
+    std::optional<std::vector<Index>> sharp{};
+    /// Number of all samples whose part these are; 0: these are all.
+    Index stand_for = 0;
     /// Samples whose parameters stay, ascending: corners, the seam, those with a tangent.
     std::vector<Index> fixed{};
     /// Greatest part of what is allowed between samples (measure/between_samples.hpp) that a
@@ -48,6 +54,11 @@ struct CurveTask {
     /// Asked every round; true ends the search with Cancelled.
     std::function<bool()> cancelled{};
 };
+
+/// The number of samples, or of those that they stand for.
+inline Index samples_in_all(const CurveTask& task) {
+    return task.stand_for > 0 ? task.stand_for : task.samples.size();
+}
 
 /// The smallest of its tolerances.
 inline double tightest(const CurveTask& task) {
@@ -87,6 +98,10 @@ enum class Effort { quick, thorough };
 /// SolverError when the samples do not determine the control points.
 bool settle(const CurveTask& task, CurveTrial& trial, int rounds, KnotShift shift,
             Effort effort = Effort::quick);
+
+/// Makes a trial with control points one of these samples: so many steps of correction, distances.
+/// A sample that its neighbours keep from its closest point has the distance of that one.
+void follow(const CurveTask& task, CurveTrial& trial, int corrections);
 
 /// Limits a planar curve's inflections, and with them what it may turn in all: half a turn further
 /// than its samples. Negative: any number.

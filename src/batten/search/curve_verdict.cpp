@@ -17,7 +17,7 @@ constexpr Index most_for_inflections = 20000; // samples: beyond it they show no
 } // namespace
 
 bool can_show_inflections(const CurveTask& task) {
-    return task.samples.dim() == 2 && task.samples.size() <= most_for_inflections;
+    return task.samples.dim() == 2 && samples_in_all(task) <= most_for_inflections;
 }
 
 double visible_height(const CurveTask& task, double tolerance) {
@@ -76,6 +76,8 @@ FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allow
     const Index m = task.samples.size();
     FitReport report = inflections_of(task, found.trial);
     report.stages = found.stages;
+    report.searched_samples = found.searched;
+    report.passes = found.passes;
     report.termination = found.met ? Termination::tolerance_met : Termination::tolerance_not_met;
     report.noise_level = outcome.noise;
     const BetweenSamples between = check_reached(task, found.trial);
