@@ -1,5 +1,6 @@
 #include <batten/search/curve_exchange.hpp>
 
+#include <batten/core/distinct.hpp>
 #include <batten/search/curve_corners.hpp>
 #include <batten/search/curve_knots.hpp>
 #include <batten/search/thinned_task.hpp>
@@ -15,7 +16,7 @@ namespace batten {
 namespace {
 
 constexpr Index few_enough = 20000;       // samples that are searched by all of them
-constexpr Index first_stretches = 3000;   // see representatives()
+constexpr Index first_stretches = 1000;   // see representatives()
 constexpr Index finer = 4;                // times as many stretches where these do not suffice
 constexpr Index least_part = 3;           // some of the samples: at most a third
 constexpr Index samples_per_control = 16; // so many tell what a control point does
@@ -28,37 +29,69 @@ class Exchange {
 
     /// A curve that holds for all samples; or, where only the stated number of control points keeps
     /// it from them, the one that the search left. Nothing where these samples do not suffice.
-    std::optional<CurveWithin> by(std::vector<Index> kept) {
-        constexpr int most_searches = 4;
-        for (int k = 0; k < most_searches; ++k) {
-            ThinnedTask some(all_, kept);
-            const Index fewest = static_cast<Index>(kept.size()) / samples_per_control;
-            CurveWithin found = search_(some.task(), std::min(most_, fewest));
-            found.searched = static_cast<Index>(kept.size());
-            if (!found.met) {
-                if (most_ > fewest || !std::isfinite(found.trial.worst) || found.trial.worst <= 1)
-                    return {};
-                return missed(some, std::move(found));
-            }
-            if (std::optional<CurveTrial> trial = for_all(found.trial, kept)) {
-                take_corners(some);
-                found.trial = std::move(*trial);
-                return found;
-            }
+    std::optional<CurveWithin> by(Index stretches) {
+        constexpr int most_rounds = 3;
+        for (int k = 0; k < most_rounds; ++k) {
+            std::vector<Candidate> candidates = searched(stretches);
+            if (candidates.empty()) return {};
+            if (!candidates.front().found.met) return limited(std::move(candidates.front()));
+            for (Candidate& candidate : candidates)
+                if (candidate.found.met && holds_for_all(candidate))
+                    return std::move(candidate.found);
         }
         return {};
     }
 
   private:
-    /// The trial settled on ever more of the samples that break the tolerance, which are kept.
-    std::optional<CurveTrial> for_all(CurveTrial trial, std::vector<Index>& kept) {
+    struct Candidate {
+        std::unique_ptr<ThinnedTask> some;
+        CurveWithin found;
+    };
+
+    /// What is found by ever more samples, for which knots can go is a matter of luck: the fewest
+    /// control points first; what is not met last, the most samples first.
+    std::vector<Candidate> searched(Index stretches) {
+        std::vector<Candidate> result;
+        for (Index times : {1, 2, 3}) {
+            std::vector<Index> kept = representatives(all_, times * stretches);
+            if (static_cast<Index>(kept.size()) > all_.samples.size() / least_part) break;
+            kept.insert(kept.end(), offenders_.begin(), offenders_.end());
+            Candidate next{std::make_unique<ThinnedTask>(all_, distinct(std::move(kept))), {}};
+            next.found = search_(next.some->task(), std::min(most_, told(*next.some)));
+            next.found.searched = next.some->task().samples.size();
+            result.push_back(std::move(next));
+        }
+        std::ranges::stable_sort(result, {}, [](const Candidate& c) {
+            return std::pair(!c.found.met, c.found.met ? controls(c.found) : -c.found.searched);
+        });
+        return result;
+    }
+
+    /// Control points of which the samples tell.
+    static Index told(ThinnedTask& some) {
+        return some.task().samples.size() / samples_per_control;
+    }
+
+    bool holds_for_all(Candidate& candidate) {
+        std::vector<Index> corners = candidate.some->original(candidate.some->task().corners);
+        std::optional<CurveTrial> trial =
+            for_all(std::move(candidate.some), std::move(candidate.found.trial));
+        if (!trial) return false;
+        candidate.found.trial = std::move(*trial);
+        all_.corners = std::move(corners);
+        all_.fixed = fixed_samples(all_);
+        return true;
+    }
+
+    /// The trial settled on ever more of the samples that break the tolerance, where it can be.
+    std::optional<CurveTrial> for_all(std::unique_ptr<ThinnedTask> some, CurveTrial trial) {
         constexpr int most_exchanges = 8;
-        auto some = std::make_unique<ThinnedTask>(all_, kept);
         for (int k = 0; k < most_exchanges; ++k) {
             CurveTrial all = some->carried(trial);
             ++passes_;
             if (all.worst <= 1) return refitted(std::move(all));
-            if (!add_offenders(all, kept)) return {};
+            std::vector<Index> kept = some->kept();
+            if (!add_offenders(all, kept, offenders_)) return {};
             auto more = std::make_unique<ThinnedTask>(all_, kept);
             trial = more->restricted(all, *some, trial.weights);
             some = std::move(more);
@@ -86,24 +119,24 @@ class Exchange {
         return within;
     }
 
-    CurveWithin missed(const ThinnedTask& some, CurveWithin found) {
-        const auto closest = std::exchange(found.closest, {});
-        found.trial = some.carried(found.trial);
+    /// What is left where nothing was found: an answer if no more control points were allowed.
+    std::optional<CurveWithin> limited(Candidate left) {
+        CurveWithin& found = left.found;
+        if (most_ > told(*left.some) || !std::isfinite(found.trial.worst) || found.trial.worst <= 1)
+            return {};
+        const ClosestSeen closest = std::exchange(found.closest, {});
+        found.trial = left.some->carried(found.trial);
         found.closest.see(all_, found.trial);
-        if (closest.trial()) found.closest.see(all_, some.carried(*closest.trial()));
+        if (closest.trial()) found.closest.see(all_, left.some->carried(*closest.trial()));
         passes_ += 2;
-        return found;
-    }
-
-    void take_corners(ThinnedTask& some) {
-        all_.corners = some.original(some.task().corners);
-        all_.fixed = fixed_samples(all_);
+        return std::move(found);
     }
 
     CurveTask& all_;
     Index most_;
     const CurveSearch& search_;
     Index& passes_;
+    std::vector<Index> offenders_; ///< of any candidate
 };
 
 } // namespace
@@ -113,9 +146,7 @@ CurveWithin by_exchange(CurveTask& task, Index most, const CurveSearch& search) 
     Index passes = 0;
     for (Index stretches = first_stretches; m > few_enough && m / least_part > stretches;
          stretches *= finer) {
-        std::vector<Index> kept = representatives(task, stretches);
-        if (static_cast<Index>(kept.size()) > m / least_part) break;
-        if (auto found = Exchange(task, most, search, passes).by(std::move(kept))) {
+        if (auto found = Exchange(task, most, search, passes).by(stretches)) {
             found->passes = passes;
             return std::move(*found);
         }

@@ -21,7 +21,7 @@ namespace batten {
 namespace {
 
 constexpr Index few_enough = 40; // control points for which a second search takes little time
-constexpr Index squeezed_samples = 500; // at most: squeezing costs a hundred passes over them
+constexpr Index squeezed_samples = 500; // at most: doing it all again costs many passes over them
 
 /// Refines without corners and with them: what took fewer control points, or came nearer.
 CurveWithin refined_with_corners(CurveTask& task, const ToleranceOptions& options, Index most) {
@@ -54,7 +54,7 @@ CurveWithin refined_with_corners(CurveTask& task, const ToleranceOptions& option
 
 /// The fewest control points from one search: refined and thinned out, or risen.
 CurveWithin refined_and_thinned(CurveTask& task, const ToleranceOptions& options, Index most) {
-    const bool few = samples_in_all(task) <= few_samples;
+    const bool few = task.samples.size() <= few_samples;
     CurveWithin best = refined_with_corners(task, options, most);
     if (few) rise_instead(task, most, best);
     // what is wild is searched again before anything is taken out
@@ -90,11 +90,12 @@ Index squeeze_tighter(CurveTask& task, std::vector<double> tolerance,
 /// points: first for the smallest everywhere.
 void squeeze_further(CurveTask& task, const ToleranceOptions& options, Index most,
                      CurveWithin& best) {
-    const auto worthwhile = [&] {
-        return best.met && controls(best) <= few_enough && samples_in_all(task) <= squeezed_samples;
-    };
-    if (!worthwhile()) return;
+    const bool few = samples_in_all(task) <= squeezed_samples;
+    const auto worthwhile = [&] { return best.met && controls(best) <= few_enough; };
+    if (!worthwhile() || (!few && (task.stand_for == 0 || task.samples.size() > few_samples)))
+        return;
     squeeze(task, best);
+    if (!few) return;
     const double smallest = tightest(task);
     if (std::ranges::any_of(task.tolerance, [&](double t) { return t > smallest; }))
         squeeze_tighter(task, std::vector<double>(task.tolerance.size(), smallest), options, most,

@@ -173,7 +173,7 @@ CurveWithin refined(const CurveTask& task, Index most) {
             result.met = met;
             least_straying = strays;
         }
-        if ((result.met && least_straying <= 1) || samples_in_all(task) > few_samples) break;
+        if ((result.met && least_straying <= 1) || task.samples.size() > few_samples) break;
     }
     result.stages.emplace_back("refined", result.trial.knots.free_count());
     return result;

@@ -1,19 +1,15 @@
 #include <batten/search/thinned_task.hpp>
 
+#include <batten/core/distinct.hpp>
 #include <batten/search/curve_knots.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace batten {
 
 namespace {
-
-void sort_once(std::vector<Index>& samples) {
-    std::ranges::sort(samples);
-    samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
-}
 
 /// What something is said of.
 std::vector<Index> marked(const CurveTask& task) {
@@ -21,8 +17,7 @@ std::vector<Index> marked(const CurveTask& task) {
     for (const HeldTangent& tangent : task.hold.tangents) result.push_back(tangent.sample);
     result.insert(result.end(), task.corners.begin(), task.corners.end());
     result.insert(result.end(), task.fixed.begin(), task.fixed.end());
-    sort_once(result);
-    return result;
+    return distinct(std::move(result));
 }
 
 /// Adds samples, each with enough beside it for a piece of the curve.
@@ -78,8 +73,7 @@ std::vector<Index> representatives(const CurveTask& task, Index stretches) {
     }
     keep_with_neighbours(task, marked(task), kept);
     if (task.sharp && few_sharp(task, stretches)) keep_with_neighbours(task, *task.sharp, kept);
-    sort_once(kept);
-    return kept;
+    return distinct(std::move(kept));
 }
 
 ThinnedTask::ThinnedTask(const CurveTask& whole, const std::vector<Index>& kept)
@@ -144,7 +138,7 @@ CurveTrial ThinnedTask::restricted(const CurveTrial& all, const ThinnedTask& oth
     return trial;
 }
 
-bool add_offenders(const CurveTrial& all, std::vector<Index>& kept) {
+bool add_offenders(const CurveTrial& all, std::vector<Index>& kept, std::vector<Index>& offenders) {
     constexpr double nearly = 0.97; // what may break it next
     constexpr double unseen_shape = 2;
     constexpr Index parts = 8;
@@ -161,8 +155,10 @@ bool add_offenders(const CurveTrial& all, std::vector<Index>& kept) {
         for (Index part = 1; part < parts; ++part)
             added.push_back(std::min(to - 1, from + (to - from) * part / parts));
     }
-    kept.insert(kept.end(), added.begin(), added.end());
-    sort_once(kept);
+    for (std::vector<Index>* samples : {&kept, &offenders}) {
+        samples->insert(samples->end(), added.begin(), added.end());
+        *samples = distinct(std::move(*samples));
+    }
     return !added.empty();
 }
 

@@ -21,6 +21,7 @@ class ThinnedTask {
     ThinnedTask& operator=(const ThinnedTask&) = delete;
 
     CurveTask& task() { return task_; }
+    const std::vector<Index>& kept() const { return subset_.kept(); }
     Index original(Index sample) const { return subset_.original(sample); }
     std::vector<Index> original(std::vector<Index> samples) const;
 
@@ -42,9 +43,9 @@ class ThinnedTask {
     CurveTask task_;
 };
 
-/// Adds to some samples, ascending, what nearly breaks the tolerance between two of them: the worst
-/// of each such stretch, and others spread over it where it is so bad that its shape was not seen.
-/// Returns whether there were any.
-bool add_offenders(const CurveTrial& all, std::vector<Index>& kept);
+/// Adds to some samples, ascending, and to `offenders` what nearly breaks the tolerance between two
+/// of them: the worst of each such stretch, and others spread over it where it is so bad that its
+/// shape was not seen. Returns whether there were any.
+bool add_offenders(const CurveTrial& all, std::vector<Index>& kept, std::vector<Index>& offenders);
 
 } // namespace batten
