@@ -19,7 +19,7 @@ constexpr Index few_enough = 20000;       // samples that are searched by all of
 constexpr Index first_stretches = 1000;   // see representatives()
 constexpr Index finer = 4;                // times as many stretches where these do not suffice
 constexpr Index least_part = 3;           // some of the samples: at most a third
-constexpr Index samples_per_control = 16; // so many tell what a control point does
+constexpr Index samples_per_control = 32; // so many tell what a control point does
 
 /// Searches by some samples, at one number of stretches.
 class Exchange {
@@ -73,14 +73,20 @@ class Exchange {
     }
 
     bool holds_for_all(Candidate& candidate) {
-        std::vector<Index> corners = candidate.some->original(candidate.some->task().corners);
+        const std::vector<Index> before = all_.corners;
+        take_corners(candidate.some->original(candidate.some->task().corners));
         std::optional<CurveTrial> trial =
             for_all(std::move(candidate.some), std::move(candidate.found.trial));
-        if (!trial) return false;
-        candidate.found.trial = std::move(*trial);
+        if (trial)
+            candidate.found.trial = std::move(*trial);
+        else
+            take_corners(before);
+        return trial.has_value();
+    }
+
+    void take_corners(std::vector<Index> corners) {
         all_.corners = std::move(corners);
         all_.fixed = fixed_samples(all_);
-        return true;
     }
 
     /// The trial settled on ever more of the samples that break the tolerance, where it can be.
@@ -124,6 +130,7 @@ class Exchange {
         CurveWithin& found = left.found;
         if (most_ > told(*left.some) || !std::isfinite(found.trial.worst) || found.trial.worst <= 1)
             return {};
+        take_corners(left.some->original(left.some->task().corners));
         const ClosestSeen closest = std::exchange(found.closest, {});
         found.trial = left.some->carried(found.trial);
         found.closest.see(all_, found.trial);

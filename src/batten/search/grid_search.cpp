@@ -2,6 +2,7 @@
 #include <batten/core/stopwatch.hpp>
 #include <batten/measure/deviation.hpp>
 #include <batten/problem/plan.hpp>
+#include <batten/search/grid_exchange.hpp>
 #include <batten/search/grid_trials.hpp>
 #include <batten/search/search.hpp>
 #include <batten/search/verdict_words.hpp>
@@ -28,7 +29,7 @@ std::vector<Index> most_per_axis(const Problem& problem, double part) {
 
 /// The fewest control points, with the certificate of a grid.
 GridWithin certified(const GridTask& task) {
-    GridWithin found = fewest_sizes(task);
+    GridWithin found = sizes_by_exchange(task);
     if (found.spline.axis_count() > 0 && !task.parameters.is_scattered())
         found.between = check_reached(task, found.spline, found.worst);
     return found;
@@ -60,6 +61,8 @@ FitReport judged(const GridTask& task, const GridWithin& found, Index allowed, d
     const BetweenSamples& between = found.between;
     const bool met = found.met && between.excess <= wild_part;
     report.stages = found.stages;
+    report.searched_samples = found.searched;
+    report.passes = found.passes;
     report.tolerance = *std::ranges::min_element(task.tolerance);
     report.termination = met ? Termination::tolerance_met : Termination::tolerance_not_met;
     report.between_samples = between.excess;

@@ -173,9 +173,9 @@ GridWithin fewest_sizes(const GridTask& task) {
         if (bent && task.parameters.is_scattered()) break; // no rows to take differences along
         std::vector<Spread> spreads;
         for (std::size_t k = 0; k < degree.size(); ++k)
-            spreads.push_back(bent && task.closures[k] == Closure::open
-                                  ? bend_spread(task.samples, t[k], k, degree[k])
-                                  : even_spread(t[k]));
+            spreads.push_back(!bent || task.closures[k] == Closure::closed ? even_spread(t[k])
+                              : task.bends.empty() ? bend_spread(task.samples, t[k], k, degree[k])
+                                                   : task.bends[k]);
         GridTrials search(task, std::move(spreads));
         std::vector<Index> size;
         for (std::size_t k = 0; k < degree.size(); ++k)
@@ -203,7 +203,10 @@ GridWithin fewest_sizes(const GridTask& task) {
         take_off(*best, n, least);
         stages.emplace_back("equalised", best->fewest);
     }
-    return {std::move(best->best), best->met, best->best_worst, std::move(stages)};
+    return {.spline = std::move(best->best),
+            .met = best->met,
+            .worst = best->best_worst,
+            .stages = std::move(stages)};
 }
 
 } // namespace batten

@@ -2,6 +2,7 @@
 
 #include <batten/measure/between_samples.hpp>
 #include <batten/problem/options.hpp>
+#include <batten/search/spread_knots.hpp>
 #include <batten/spline/spline.hpp>
 
 #include <functional>
@@ -17,6 +18,8 @@ struct GridWithin {
     bool met = false;
     double worst = 0; ///< largest distance of a sample over its tolerance, at its own parameters
     std::vector<std::pair<std::string, Index>> stages;
+    Index searched = 0;       ///< samples that the search went by where it was not all
+    Index passes = 0;         ///< candidates that were then checked by all
     BetweenSamples between{}; ///< as check_reached finds it, where it was asked
 };
 
@@ -30,6 +33,9 @@ struct GridTask {
     std::vector<Index> most; ///< control points per axis
     const HoldOptions& hold;
     const std::function<bool()>& cancelled;
+    /// Per axis how knots follow the samples' bends (bend_spread), where more samples than these
+    /// show it; empty: these do.
+    std::vector<Spread> bends{};
     /// Whether what the spline does between a grid's samples counts; each trial then takes longer.
     enum class Between { left_aside, counted } between = Between::left_aside;
 };

@@ -17,7 +17,38 @@ namespace {
 
 constexpr double reachable = 2.5; // times the tolerance: beyond it pushing does not help
 
+/// Directly on a grid; on a cloud by preconditioned conjugate gradients, which hold still what no
+/// sample reaches.
+PointSet solve(const GridTask& task, const NormalSystem& system) {
+    if (task.hold.equalities())
+        return solve_direct(
+            system, held_constraints(system.axes(), task.samples, task.parameters, task.hold)
+                        .centred(system.centre()));
+    if (!task.parameters.is_scattered()) return solve_direct(system);
+    PointSet control(system.size(), system.dim());
+    ConjugateGradients cg(system, Preconditioner::axes);
+    iterate(cg, control, {.max_iterations = 300, .relative_gradient = 1e-9});
+    return control;
+}
+
 } // namespace
+
+GridFit measured(const GridTask& task, Spline spline) {
+    GridFit fit{std::move(spline), {}, 0};
+    fit.ratio = parametric_deviations(fit.spline, task.samples, task.parameters);
+    for (std::size_t i = 0; i < fit.ratio.size(); ++i) {
+        fit.ratio[i] /= task.tolerance[i];
+        fit.worst = std::max(fit.worst, fit.ratio[i]);
+    }
+    return fit;
+}
+
+GridFit least_squares(const GridTask& task, const std::vector<KnotVector>& axes,
+                      const Samples& goals) {
+    const auto system = assemble(axes, goals, task.parameters);
+    return measured(task,
+                    Spline::from_free(axes, uncentred(solve(task, *system), system->centre())));
+}
 
 GridTrials::GridTrials(const GridTask& task, std::vector<Spread> spreads)
     : task_(task), spreads_(std::move(spreads)), ascending_(ascending(task.parameters)) {}
@@ -41,7 +72,7 @@ double GridTrials::attempt(const std::vector<Index>& n) {
             return std::numeric_limits<double>::infinity();
     }
     try {
-        Trial trial = fitted(axes, task_.samples);
+        GridFit trial = least_squares(task_, axes, task_.samples);
         if (effort == Effort::equalised && trial.worst > 1 && trial.worst < reachable)
             equalise(axes, trial);
         const double wildness = between(trial);
@@ -55,25 +86,13 @@ double GridTrials::attempt(const std::vector<Index>& n) {
     }
 }
 
-GridTrials::Trial GridTrials::fitted(const std::vector<KnotVector>& axes,
-                                     const Samples& goals) const {
-    const auto system = assemble(axes, goals, task_.parameters);
-    Trial trial{Spline::from_free(axes, uncentred(solve(*system), system->centre())), {}, 0};
-    trial.ratio = parametric_deviations(trial.spline, task_.samples, task_.parameters);
-    for (std::size_t i = 0; i < trial.ratio.size(); ++i) {
-        trial.ratio[i] /= task_.tolerance[i];
-        trial.worst = std::max(trial.worst, trial.ratio[i]);
-    }
-    return trial;
-}
-
-void GridTrials::equalise(const std::vector<KnotVector>& axes, Trial& best_trial) const {
+void GridTrials::equalise(const std::vector<KnotVector>& axes, GridFit& best_trial) const {
     constexpr int rounds = 16;
     constexpr double calm = 0.7; // part of the tolerance below which a sample is left alone
     constexpr double push = 1;
     Samples goals = task_.samples;
     PointSet moved(task_.samples.points);
-    Trial trial = best_trial;
+    GridFit trial = best_trial;
     std::vector<double> course{trial.worst};
     for (int round = 0; round < rounds && best_trial.worst > 1; ++round) {
         const PointSet now = evaluate_grid(trial.spline, task_.parameters.axes);
@@ -85,7 +104,7 @@ void GridTrials::equalise(const std::vector<KnotVector>& axes, Trial& best_trial
                 moved(i, d) += factor * (task_.samples.points(i, d) - now(i, d));
         }
         goals.points = Points(moved);
-        trial = fitted(axes, goals);
+        trial = least_squares(task_, axes, goals);
         if (trial.worst < best_trial.worst) best_trial = trial;
         course.push_back(best_trial.worst);
         // three rounds must take a quarter off the excess
@@ -94,32 +113,18 @@ void GridTrials::equalise(const std::vector<KnotVector>& axes, Trial& best_trial
     }
 }
 
-double GridTrials::between(const Trial& trial) const {
+double GridTrials::between(const GridFit& trial) const {
     if (task_.between == GridTask::Between::left_aside || !std::isfinite(trial.worst)) return 0;
     return check_reached(task_, trial.spline, trial.worst).excess / wild_part;
 }
 
-void GridTrials::keep(Index count, Trial& trial) {
+void GridTrials::keep(Index count, GridFit& trial) {
     const bool within = trial.worst <= 1;
     if (met ? !within || count >= fewest : !within && trial.worst >= best_worst) return;
     met = within;
     fewest = count;
     best_worst = trial.worst;
     best = std::move(trial.spline);
-}
-
-/// Directly on a grid; on a cloud by preconditioned conjugate gradients, which hold still what no
-/// sample reaches.
-PointSet GridTrials::solve(const NormalSystem& system) const {
-    if (task_.hold.equalities())
-        return solve_direct(
-            system, held_constraints(system.axes(), task_.samples, task_.parameters, task_.hold)
-                        .centred(system.centre()));
-    if (!task_.parameters.is_scattered()) return solve_direct(system);
-    PointSet control(system.size(), system.dim());
-    ConjugateGradients cg(system, Preconditioner::axes);
-    iterate(cg, control, {.max_iterations = 300, .relative_gradient = 1e-9});
-    return control;
 }
 
 } // namespace batten

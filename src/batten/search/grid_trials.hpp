@@ -2,12 +2,25 @@
 
 #include <batten/search/grid_sizes.hpp>
 #include <batten/search/spread_knots.hpp>
-#include <batten/system/normal_system.hpp>
 
 #include <limits>
 #include <map>
 
 namespace batten {
+
+/// A spline and how far the samples of a task are from it.
+struct GridFit {
+    Spline spline;
+    std::vector<double> ratio; ///< distance over tolerance, per sample
+    double worst = 0;          ///< the largest of these
+};
+
+GridFit measured(const GridTask& task, Spline spline);
+
+/// Least squares to `goals`, which stand for the samples; judged by the samples. Throws SolverError
+/// when they do not determine the control points, ConstraintConflict when what must hold cannot.
+GridFit least_squares(const GridTask& task, const std::vector<KnotVector>& axes,
+                      const Samples& goals);
 
 /// Fits with given numbers of control points and remembers the best that met the tolerance.
 class GridTrials {
@@ -28,22 +41,13 @@ class GridTrials {
     std::string conflict; ///< why what must hold could not, with too few control points
 
   private:
-    struct Trial {
-        Spline spline;
-        std::vector<double> ratio; ///< distance over tolerance, per sample
-        double worst;
-    };
-
     double attempt(const std::vector<Index>& n);
-    /// Least squares to `goals`, which stand for the samples; judged by the samples.
-    Trial fitted(const std::vector<KnotVector>& axes, const Samples& goals) const;
     /// Moves the goals of the samples that are furthest out beyond them, again and again, as a
     /// greater weight would: the system keeps its factors.
-    void equalise(const std::vector<KnotVector>& axes, Trial& best_trial) const;
+    void equalise(const std::vector<KnotVector>& axes, GridFit& best_trial) const;
     /// Part of what would be wild between samples, where that counts; else 0.
-    double between(const Trial& trial) const;
-    void keep(Index count, Trial& trial);
-    PointSet solve(const NormalSystem& system) const;
+    double between(const GridFit& trial) const;
+    void keep(Index count, GridFit& trial);
 
     const GridTask& task_;
     std::vector<Spread> spreads_;
