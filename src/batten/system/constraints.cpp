@@ -109,6 +109,7 @@ Constraints Constraints::centred(const std::vector<double>& centre) const {
 
 bool Constraints::certainly_independent(Index controls) const {
     constexpr double enough = 1e-8; // squared distance of a unit row from the span of those before
+    if (size() == 0) return true;
     if (size() > controls) return false;
     std::vector<double> squares(static_cast<std::size_t>(size()), 0);
     for_each_entry([&](Index k, Index, double value) {
