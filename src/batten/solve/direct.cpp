@@ -99,9 +99,11 @@ struct Solver {
             if (!has_rows) throw;
         }
         rows = std::make_unique<RowFactorization>(system.axes(), of, system.centre());
+        if (!plain) return;
         for (const BandedQr& axis : rows->axes()) axis.check();
-        constexpr double hopeless = 1e26; // of rows' condition the square: no digits are left
-        if (!(inverse_norm(system, *rows) < hopeless))
+        constexpr double hopeless = 1e26; // an axis's squared condition that leaves no digits
+        if (!(inverse_norm(system, *rows) <
+              std::pow(hopeless, static_cast<double>(system.axes().size()))))
             throw SolverError("the least-squares problem is singular: in all it determines no "
                               "digits of some control points");
     }
