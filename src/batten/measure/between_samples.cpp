@@ -57,7 +57,7 @@ bool turns_around(const PointSet& p, Index first, Index count) {
 
 constexpr double loop_excess = 2;
 constexpr Index steps = 5; // from a sample to the next
-constexpr Index pairs_at_once = 1024;
+constexpr Index pairs_at_once = 1 << 14;
 
 /// Samples in order with a curve's parameters and tolerances, and what it does between them.
 struct Run {

@@ -56,7 +56,7 @@ void mark_held(const CurveTask& task, CurveTrial& trial) {
 
 constexpr double misshapen = 1.25; // stands for a distance that is not reached
 
-constexpr Index samples_at_once = 4096;
+constexpr Index samples_at_once = 1 << 15; // fewer are done sooner than a thread is called
 
 /// The Gauss-Newton step from a place of the curve towards its closest point to a sample; 0 where
 /// the curve stands still.
