@@ -1,6 +1,6 @@
 # Debian packages, one list each for building and for testing; sourced by the scripts beside it.
 
-build_packages="g++ cmake ninja-build libeigen3-dev libtbb-dev libfmt-dev nlohmann-json3-dev libcli11-dev libocct-data-exchange-dev"
+build_packages="g++ cmake ninja-build libeigen3-dev libtbb-dev libfmt-dev nlohmann-json3-dev libcli11-dev zlib1g-dev libocct-data-exchange-dev"
 test_packages="libgtest-dev python3 python3-numpy python3-scipy python3-meshio chromium fonts-dejavu-core"
 fuzz_packages="clang libclang-rt-14-dev"
 race_packages="libbenchmark-dev python3 python3-numpy python3-scipy libocct-modeling-algorithms-dev libocct-modeling-data-dev libsisl-dev"

@@ -46,7 +46,8 @@ void run(const FitFlags& flags, const CLI::App& fit_app) {
     check(flags.exported, fit_app, flags.outputs, flags.report);
     Progress progress(flags.quiet ? Progress::Show::never : Progress::Show::when_slow);
     progress.say("reading " + flags.points);
-    const Samples samples = samples_of(flags);
+    const Samples samples =
+        samples_of(flags, [&](const ReadProgress& now) { progress.say_read(flags.points, now); });
     FitOptions options = options_of(flags, fit_app, samples);
     check_holds(flags, samples, options);
     if (!flags.report.empty() && flags.history) options.most_frames = 60;

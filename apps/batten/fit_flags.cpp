@@ -132,13 +132,18 @@ void add_noise_and_stop_flags(CLI::App& fit, FitFlags& flags) {
         ->check(not_negative())
         ->group("Machine")
         ->capture_default_str();
+    fit.add_option("--memory", flags.memory,
+                   "Most memory for the samples, like 800M or 2G; more are refused")
+        ->group("Machine");
     fit.add_flag("--quiet,-q", flags.quiet, "Say nothing unless something is wrong")
         ->group("Machine");
 }
 
 void add_output_flags(CLI::App& fit, FitFlags& flags) {
-    fit.add_option("POINTS", flags.points,
-                   "Points: .csv .txt .xyz .dat .npy .ply .obj .stl .las, or - for standard input")
+    fit.add_option(
+           "POINTS", flags.points,
+           "Points: .csv .txt .xyz .dat (also .csv.gz ...) .npy .ply .obj .stl .las, or - for "
+           "standard input")
         ->required();
     fit.add_option("--output,-o", flags.outputs,
                    "Write the spline: .json .step .iges .svg .obj .g2 .stl .vtu .vts .csv; may be "

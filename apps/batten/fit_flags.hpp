@@ -3,6 +3,7 @@
 #include "export_flags.hpp"
 
 #include <batten/fit/fit.hpp>
+#include <batten/io/points_file.hpp>
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -51,6 +52,7 @@ struct FitFlags {
     bool robust = false;
     std::string project;
     int threads = 0;
+    std::string memory;
     bool quiet = false;
 };
 
@@ -61,8 +63,9 @@ void add_flags(CLI::App& fit, FitFlags& flags);
 /// and parameters, grid and heights.
 void add_data_flags(CLI::App& fit, FitFlags& flags);
 
-/// The points that the flags name, with their grid, weights and notes.
-Samples samples_of(const FitFlags& flags);
+/// The points that the flags name, with their grid, weights and notes. Throws InvalidInput for more
+/// than --memory allows.
+Samples samples_of(const FitFlags& flags, const ReadObserver& observer = {});
 
 /// What they say of the spline's space; `fit` knows which were given.
 ShapeOptions shape_options(const FitFlags& flags, const CLI::App& fit, const Samples& samples);

@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
+#include <limits>
 #include <optional>
 
 namespace batten::command {
@@ -228,12 +230,33 @@ StopRule stop_rule(const FitFlags& flags, const CLI::App& fit) {
 
 } // namespace
 
-Samples samples_of(const FitFlags& flags) {
+namespace {
+
+/// Throws InvalidInput where the samples take more bytes than --memory allows; -1 of them are not
+/// counted yet.
+void check_memory_flag(const FitFlags& flags, Index allowed, Index samples, Index dim) {
+    const double needed = static_cast<double>(samples) * static_cast<double>(dim) * sizeof(double);
+    if (needed > static_cast<double>(allowed))
+        throw InvalidInput(fmt::format("--memory {}: the {} samples of {} take {:.3g} MB",
+                                       flags.memory, samples, flags.points, needed / 1e6));
+}
+
+} // namespace
+
+Samples samples_of(const FitFlags& flags, const ReadObserver& observer) {
     ReadOptions options;
     if (!flags.grid.empty()) options.grid = parse_shape("--grid", flags.grid);
     options.heights = flags.heights;
     options.spacing = parse_spacing(flags.spacing);
+    const Index allowed = flags.memory.empty() ? std::numeric_limits<Index>::max()
+                                               : parse_bytes("--memory", flags.memory);
+    if (!flags.memory.empty() && std::filesystem::is_regular_file(flags.points)) {
+        const auto source = open_points(flags.points, options);
+        check_memory_flag(flags, allowed, source->size(), source->dim());
+    }
+    options.observer = observer;
     Samples samples = read_points(flags.points, options);
+    check_memory_flag(flags, allowed, samples.size(), samples.dim());
     if (!flags.weights.empty()) samples.weights = read_table(flags.weights).values();
     return samples;
 }

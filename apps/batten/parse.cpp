@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace batten::command {
 
@@ -68,6 +69,20 @@ double parse_number(std::string_view option, std::string_view text) {
     if (!parsed(text, value) || !std::isfinite(value))
         throw InvalidInput(fmt::format("{} {}: a finite number is needed", option, text));
     return value;
+}
+
+Index parse_bytes(std::string_view option, std::string_view text) {
+    constexpr std::string_view units = "KMG";
+    const std::string_view digits = text.substr(0, text.find_first_of(units));
+    const std::size_t unit = units.find(text.empty() ? ' ' : text.back());
+    const int doublings = unit == std::string_view::npos ? 0 : 10 * (static_cast<int>(unit) + 1);
+    Index count = 0;
+    const bool whole = digits.size() + (doublings > 0 ? 1 : 0) == text.size();
+    if (!whole || !parsed(digits, count) || count < 1 ||
+        count > (std::numeric_limits<Index>::max() >> doublings))
+        throw InvalidInput(
+            fmt::format("{} {}: bytes like 800M are needed, K, M or G after them", option, text));
+    return count << doublings;
 }
 
 bool is_list(std::string_view text) {

@@ -20,6 +20,10 @@ std::array<double, 2> parse_spacing(std::string_view text);
 /// One finite number; throws InvalidInput naming the option.
 double parse_number(std::string_view option, std::string_view text);
 
+/// Bytes: a whole number, or one with K, M or G (powers of 1024) after it; throws InvalidInput
+/// naming the option.
+Index parse_bytes(std::string_view option, std::string_view text);
+
 /// Whether it is a list of whole numbers (empty: of none), and no file's name.
 bool is_list(std::string_view text);
 

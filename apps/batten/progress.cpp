@@ -1,5 +1,6 @@
 #include "progress.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -39,18 +40,28 @@ void Progress::say(std::string text) {
     text_ = std::move(text);
 }
 
+void Progress::say_read(const std::string& file, const ReadProgress& now) {
+    const double rate = now.bytes / std::max(seconds(), 1e-3);
+    std::string words = fmt::format("reading {}: {:.0f}", file, now.bytes / 1e6);
+    if (now.of > 0) words += fmt::format(" of {:.0f}", now.of / 1e6);
+    words += fmt::format(" MB, {:.0f} MB/s", rate / 1e6);
+    if (now.of > 0) words += fmt::format(", {:.0f} s left", (now.of - now.bytes) / rate);
+    say(std::move(words));
+}
+
+double Progress::seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
 void Progress::run(const std::stop_token& stop) {
     using namespace std::chrono_literals;
-    const auto start = std::chrono::steady_clock::now();
     std::unique_lock lock(mutex_);
     auto pause = 1000ms;
     while (!stop.stop_requested()) {
         wake_.wait_for(lock, stop, pause, [] { return false; });
         if (stop.stop_requested()) break;
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         shown = true;
-        fmt::print(stderr, "{}{} ({:.0f} s)", erased_line, text_, seconds);
+        fmt::print(stderr, "{}{} ({:.0f} s)", erased_line, text_, seconds());
         std::fflush(stderr);
         pause = 200ms;
     }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <batten/io/points_file.hpp>
+
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -19,10 +22,14 @@ class Progress {
     Progress& operator=(const Progress&) = delete;
 
     void say(std::string text);
+    /// "reading FILE: 120 of 240 MB, 800 MB/s, 1 s left"; reading began with this object.
+    void say_read(const std::string& file, const ReadProgress& now);
 
   private:
+    double seconds() const;
     void run(const std::stop_token& stop);
 
+    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     std::mutex mutex_;
     std::condition_variable_any wake_;
     std::string text_;

@@ -326,6 +326,25 @@ class Manners(Command):
             said += heard
         return said
 
+    def test_reading_says_how_far_it_is_and_ends_at_once(self):
+        """Through a pipe that is slow; interrupted while it waits for more."""
+        os.mkfifo(self.folder / "slow.csv")
+        terminal, other = pty.openpty()
+        fit = subprocess.Popen([BATTEN, "fit", "slow.csv", "-n", "8", "-o", "x.json"], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=other)
+        os.close(other)
+        try:
+            with open(self.folder / "slow.csv", "wb", buffering=0) as pipe:
+                pipe.write(b"0.25,0.5\n" * 400000)
+                self.listen(terminal, "reading slow.csv: 2 MB, ")
+                fit.send_signal(signal.SIGINT)
+                words = self.listen(terminal, None)
+                self.assertEqual(fit.wait(GUARD), 130)
+        finally:
+            fit.kill()
+            fit.wait()
+            os.close(terminal)
+        self.assertTrue(words.endswith("batten: interrupted; nothing was written\r\n"), words)
+
     def test_interrupt_leaves_nothing(self):
         """Interrupted once the fit itself says that it is under way."""
         self.good("generate", "rose", "--samples", 200000, "-o", "big.csv")

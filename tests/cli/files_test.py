@@ -1,4 +1,5 @@
 """Files as outputs and inputs: what is replaced, what is written into, what is refused, and that nothing is lost on the way."""
+import gzip
 import json
 import os
 import resource
@@ -430,6 +431,95 @@ class Readers(Files):
         self.write("i.csv", ",x,y\n" + "".join(f"{i + 5},{x!r},{y!r}\n" for i, (x, y) in enumerate(P.tolist())))
         self.assertIn(b"9 points in dimension 3\n", self.good("info", "i.csv"))
         self.assertIn(b"the first column has no name but does not count the rows: read as a coordinate\n", self.good("info", "i.csv"))
+
+    def numbers(self, name):
+        """Those of a file of one column, all in [0, 1], through a spline that gives back its parameter."""
+        self.write("line.json", json.dumps({"format": "batten-spline", "version": 1, "degree": [1], "knots": [[0, 0, 1, 1]],
+                                            "control_shape": [2], "control_points": [[0], [1]]}))
+        self.good("evaluate", "line.json", "--parameters", name, "-o", "numbers.npy")
+        return np.load(self.folder / "numbers.npy").ravel()
+
+    def test_long_texts(self):
+        """Of several megabytes, so that they are read in many parts, by all threads; NumPy reads them beside us."""
+        rng = np.random.default_rng(8)
+        written = [f(x) for f, x in zip(rng.choice(["%.18e".__mod__, repr, "%.3f".__mod__, "%g".__mod__], 300000), rng.random(300000).tolist())]
+        for end, extra in (("\n", ""), ("\r\n", ""), ("\n", "# a comment, 7"), ("\r\n", " ")):
+            with self.subTest(repr(end + extra)):
+                lines = [line for k, word in enumerate(written) for line in ([word] if k % 7 or not extra else [word, extra])]
+                (self.folder / "long.csv").write_bytes((end.join(["t", *lines]) + end).encode())
+                expected = np.loadtxt(self.folder / "long.csv", skiprows=1)
+                np.testing.assert_array_equal(self.numbers("long.csv"), expected)
+                content = self.read("long.csv")
+                (self.folder / "long.csv.gz").write_bytes(gzip.compress(content[:3000000], 1) + gzip.compress(content[3000000:], 1))
+                np.testing.assert_array_equal(self.numbers("long.csv.gz"), expected)
+                self.write("bad.csv", content.decode().replace("\r", "") + "0.5,0.25\n" + "x\n" * 300000)
+                self.bad(3, f"bad.csv:{len(lines) + 2}: 2 numbers where the rows before have 1", "info", "bad.csv")
+                self.write("bad.csv", content.decode().replace("\r", "") + "  0.5x\n" + "1,2\n" * 300000)
+                self.bad(3, f"bad.csv:{len(lines) + 2}:3: '0.5x' is not a number", "info", "bad.csv")
+
+    def test_one_long_line(self):
+        rng = np.random.default_rng(9)
+        H = rng.random((3, 400000))
+        np.savetxt(self.folder / "wide.csv", H, fmt="%.9f", delimiter=";")
+        self.assertGreater(self.read("wide.csv").index(b"\n"), 1 << 22)
+        self.bad(2, "wide.csv: 3x400000 means points of dimension 400000, outside 1 to 16; heights reads it as a grid of heights", "info", "wide.csv")
+        said = self.good("fit", "wide.csv", "--heights", "-n", "3x5", "-p", "1", "-q", "--summary", "-")
+        self.assertEqual(json.loads(said)["samples"], H.size)
+
+    def test_threads_read_the_same(self):
+        t = np.linspace(0, 1, 60000)
+        np.savetxt(self.folder / "h.csv", np.c_[np.cos(9 * t), np.sin(9 * t), t], delimiter=", ", header="x, y, z")
+        for threads in (1, 2, 5):
+            self.good("fit", "h.csv", "-n", 50, "-q", "--threads", threads, "-o", f"h{threads}.json")
+        self.assertEqual(self.read("h1.json"), self.read("h2.json"))
+        self.assertEqual(self.read("h1.json"), self.read("h5.json"))
+
+    def test_compressed_text(self):
+        for name in ("p.csv.gz", "p.txt.gz", "p.xyz.gz", "P.CSV.GZ"):
+            (self.folder / name).write_bytes(gzip.compress(self.read("p.csv")))
+            self.assertEqual(self.good("fit", name, "-n", 8, "-q", "-o", "-"), self.read("s.json"), name)
+        self.write("no.csv.gz", "1,2\n3,4\n")
+        self.bad(3, "no.csv.gz: not a sound .gz file: incorrect header check", "info", "no.csv.gz")
+        (self.folder / "short.csv.gz").write_bytes(gzip.compress(self.read("p.csv"))[:-4])
+        self.bad(3, "short.csv.gz: the compressed file ends too early", "info", "short.csv.gz")
+        (self.folder / "none.csv.gz").write_bytes(gzip.compress(b""))
+        self.bad(3, "none.csv.gz: the file is empty", "info", "none.csv.gz")
+        self.bad(2, "p.npy.gz: unknown extension of compressed points '.npy'; known: .csv, .txt, .xyz, .dat", "info", "p.npy.gz")
+        self.bad(2, "a.csv.gz: .gz files of points are read, not written", "generate", "rose", "-o", "a.csv.gz")
+
+    def test_binary_files_come_through_pipes(self):
+        P = np.random.default_rng(4).random((5000, 2))
+        np.save(self.folder / "q.npy", P)
+        os.mkfifo(self.folder / "pipe.npy")
+        writer = threading.Thread(target=lambda: (self.folder / "pipe.npy").write_bytes(self.read("q.npy")))
+        writer.start()
+        piped = self.good("info", "pipe.npy")
+        writer.join(GUARD)
+        self.assertEqual(piped.replace(b"pipe", b"q"), self.good("info", "q.npy"))
+
+    def test_types_of_npy(self):
+        """Every type and order, judged by the same numbers as doubles in C order."""
+        rng = np.random.default_rng(5)
+        for dtype in ("<f8", ">f8", "<f4", ">f4", "i1", "u1", "<i2", ">u2", "<i4", ">i4", "<u4", "<i8", ">u8"):
+            for order in "CF":
+                A = (100 * rng.random((500, 3))).astype(dtype)
+                np.save(self.folder / "a.npy", np.asarray(A, order=order))
+                np.save(self.folder / "b.npy", A.astype("<f8"))
+                self.assertEqual(self.good("info", "a.npy")[1:], self.good("info", "b.npy")[1:], (dtype, order))
+        np.save(self.folder / "a.npy", np.asfortranarray(rng.random((40, 50, 3))))
+        np.save(self.folder / "b.npy", np.ascontiguousarray(np.load(self.folder / "a.npy")))
+        for name in "ab":
+            self.good("fit", f"{name}.npy", "-n", "5x6", "-q", "-o", f"{name}.json")
+        self.assertEqual(self.read("a.json"), self.read("b.json"))
+
+    def test_memory(self):
+        for word in ("12X", "M", "-1", "0", "1.5G", "5 M", "9999999999G", "1Mb"):
+            self.bad(2, f"--memory {word}: bytes like 800M are needed, K, M or G after them", "fit", "p.csv", "-n", 8, "--memory", word, "-q")
+        for word in ("1K", "1M", "100000", "3G"):
+            self.assertEqual(self.good("fit", "p.csv", "-n", 8, "-q", "--memory", word, "-o", "-"), self.read("s.json"))
+        self.bad(2, "--memory 959: the 60 samples of p.csv take 0.00096 MB", "fit", "p.csv", "-n", 8, "--memory", 959, "-o", "x.json")
+        np.save(self.folder / "q.npy", np.random.default_rng(4).random((50000, 2)))
+        self.bad(2, "--memory 700K: the 50000 samples of q.npy take 0.8 MB", "fit", "q.npy", "-n", 8, "--memory", "700K", "-o", "x.json")
 
     def test_elements_without_properties(self):
         vertices = "".join(f"{i} {i * i} 0\n" for i in range(9))

@@ -5,6 +5,7 @@
 #include <batten/io/point_formats.hpp>
 #include <batten/io/spline_file.hpp>
 #include <batten/io/system_file.hpp>
+#include <batten/io/text_reader.hpp>
 
 #include <cstdint>
 #include <string>
@@ -13,26 +14,47 @@ namespace {
 
 using namespace batten;
 
+/// All numbers at once, and again in parts that end somewhere.
+void read(PointFormat::Open open, PointFormat::Open open_for_passes, const char* name,
+          std::string_view content) {
+    open(name, bytes_in_memory(content))->all();
+    const auto reader = open_for_passes(name, bytes_in_memory(content));
+    double part[7];
+    while (reader->read(part) > 0) continue;
+    reader->rewind();
+    reader->read(part);
+}
+
 [[maybe_unused]] void text(std::string_view content) {
-    parse_text("fuzz.csv", content);
+    read(open_text, open_text_for_passes, "fuzz.csv", content);
 }
 [[maybe_unused]] void airfoil(std::string_view content) {
-    parse_text("fuzz.dat", content);
+    read(open_text, open_text_for_passes, "fuzz.dat", content);
+}
+/// Parts so small that lines and blocks end everywhere.
+[[maybe_unused]] void parts(std::string_view content) {
+    TextReader("fuzz.csv", bytes_in_memory(content), {.window = 16, .block = 1}).all();
+    TextReader("fuzz.dat", bytes_in_memory(content), {.window = 16, .block = 1}).all();
+}
+[[maybe_unused]] void gz(std::string_view content) {
+    const auto bytes = uncompressed("fuzz.csv.gz", bytes_in_memory(content));
+    char part[4096];
+    while (bytes->read(part) > 0) continue;
 }
 [[maybe_unused]] void npy(std::string_view content) {
-    parse_npy("fuzz.npy", content);
+    read(open_npy, open_npy, "fuzz.npy", content);
 }
 [[maybe_unused]] void ply(std::string_view content) {
-    parse_ply("fuzz.ply", content);
+    read(open_ply, open_ply, "fuzz.ply", content);
 }
 [[maybe_unused]] void obj(std::string_view content) {
-    parse_obj("fuzz.obj", content);
+    read(open_obj, open_obj, "fuzz.obj", content);
 }
 [[maybe_unused]] void stl(std::string_view content) {
-    parse_stl("fuzz.stl", content);
+    read(open_stl, open_stl, "fuzz.stl", content);
 }
 [[maybe_unused]] void las(std::string_view content) {
-    parse_las("fuzz.las", content);
+    read(open_las, open_las, "fuzz.las", content);
 }
 [[maybe_unused]] void json(std::string_view content) {
     parse_spline_json("fuzz.json", std::string(content));

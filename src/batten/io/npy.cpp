@@ -1,8 +1,9 @@
+#include <batten/core/counts.hpp>
 #include <batten/io/point_formats.hpp>
+#include <batten/io/record_reader.hpp>
 
 #include <bit>
 #include <charconv>
-#include <cstdint>
 #include <cstring>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -55,33 +56,44 @@ std::vector<Index> parse_shape(const std::filesystem::path& path, std::string_vi
     return shape;
 }
 
-Header parse_header(const std::filesystem::path& path, std::string_view content) {
-    if (content.size() < 10 || !content.starts_with("\x93NUMPY"))
+/// The bytes before the numbers, all of them.
+std::string head_of(const std::filesystem::path& path, ByteSource& bytes) {
+    std::string head(12, '\0');
+    head.resize(bytes.read(head));
+    if (head.size() < 10 || !head.starts_with("\x93NUMPY"))
         fail(path, "not a .npy file: its first bytes are not \\x93NUMPY");
     const auto byte = [&](std::size_t k) {
-        return static_cast<std::size_t>(static_cast<unsigned char>(content[k]));
+        return static_cast<std::size_t>(static_cast<unsigned char>(head[k]));
     };
     const std::size_t version = byte(6);
     if (version < 1 || version > 3)
         fail(path, fmt::format(".npy version {} is outside 1 to 3", version));
     const std::size_t begin = version == 1 ? 10 : 12;
-    if (content.size() < begin) fail(path, "the file ends inside the header");
+    if (head.size() < begin) fail(path, "the file ends inside the header");
     const std::size_t length = version == 1
                                    ? byte(8) | byte(9) << 8U
                                    : byte(8) | byte(9) << 8U | byte(10) << 16U | byte(11) << 24U;
-    if (content.size() < begin + length)
+    const auto there = static_cast<std::size_t>(bytes.size());
+    if (there < begin + length)
         fail(path, fmt::format("the file ends inside the header: {} bytes stated, {} there", length,
-                               content.size() - begin));
-    const std::string_view dictionary = content.substr(begin, length);
-    const std::string_view type = value_of(path, dictionary, "descr");
+                               there - begin));
+    head.resize(begin + length);
+    bytes.seek(0);
+    bytes.read(head);
+    return head;
+}
+
+Header parse_header(const std::filesystem::path& path, ByteSource& bytes) {
+    const std::string head = head_of(path, bytes);
+    const std::string_view type = value_of(path, head, "descr");
     if (type.size() < 5 || type[0] != '\'' || type.find('\'', 1) != 4)
         fail(path, "the numbers' type is not a plain number (float or integer is needed)");
     Header header{type[1],
                   type[2],
                   static_cast<std::size_t>(type[3] - '0'),
-                  value_of(path, dictionary, "fortran_order").starts_with("True"),
-                  parse_shape(path, value_of(path, dictionary, "shape")),
-                  begin + length};
+                  value_of(path, head, "fortran_order").starts_with("True"),
+                  parse_shape(path, value_of(path, head, "shape")),
+                  head.size()};
     const bool known =
         (header.kind == 'f' && (header.width == 4 || header.width == 8)) ||
         ((header.kind == 'i' || header.kind == 'u') &&
@@ -92,47 +104,23 @@ Header parse_header(const std::filesystem::path& path, std::string_view content)
     return header;
 }
 
-template <class T>
-double converted(std::uint64_t bits) {
-    if constexpr (sizeof(T) == 8)
-        return static_cast<double>(std::bit_cast<T>(bits));
-    else if constexpr (sizeof(T) == 4)
-        return static_cast<double>(std::bit_cast<T>(static_cast<std::uint32_t>(bits)));
-    else if constexpr (sizeof(T) == 2)
-        return static_cast<double>(std::bit_cast<T>(static_cast<std::uint16_t>(bits)));
-    else
-        return static_cast<double>(std::bit_cast<T>(static_cast<std::uint8_t>(bits)));
+/// Which number it is: kinds and widths are checked already.
+NumberKind kind_of(const Header& header) {
+    if (header.kind == 'f') return header.width == 8 ? NumberKind::float64 : NumberKind::float32;
+    const int k = std::countr_zero(header.width); // 1, 2, 4, 8 bytes
+    constexpr NumberKind kinds[2][4] = {
+        {NumberKind::int8, NumberKind::int16, NumberKind::int32, NumberKind::int64},
+        {NumberKind::uint8, NumberKind::uint16, NumberKind::uint32, NumberKind::uint64}};
+    return kinds[header.kind == 'u' ? 1 : 0][k];
 }
 
-double number(const Header& header, const char* at) {
-    std::uint64_t bits = 0;
-    for (std::size_t k = 0; k < header.width; ++k) {
-        const std::size_t place = header.order == '>' ? header.width - 1 - k : k;
-        bits |= static_cast<std::uint64_t>(static_cast<unsigned char>(at[place])) << (8 * k);
-    }
-    if (header.kind == 'f')
-        return header.width == 8 ? converted<double>(bits) : converted<float>(bits);
-    const bool is_signed = header.kind == 'i';
-    switch (header.width) {
-    case 1:
-        return is_signed ? converted<std::int8_t>(bits) : converted<std::uint8_t>(bits);
-    case 2:
-        return is_signed ? converted<std::int16_t>(bits) : converted<std::uint16_t>(bits);
-    case 4:
-        return is_signed ? converted<std::int32_t>(bits) : converted<std::uint32_t>(bits);
-    default:
-        return is_signed ? converted<std::int64_t>(bits) : converted<std::uint64_t>(bits);
-    }
-}
-
-/// Position in the file of element `k` of the row-major array.
-std::size_t place(const Header& header, std::size_t k) {
-    if (!header.fortran) return k;
+/// Position in the row-major array of element `k` of the file, whose first axis is the fastest.
+std::size_t place(const std::vector<Index>& shape, std::size_t k) {
     std::size_t result = 0;
     std::size_t stride = 1;
-    for (Index n : header.shape) stride *= static_cast<std::size_t>(n);
-    for (std::size_t a = header.shape.size(); a-- > 0;) {
-        const auto n = static_cast<std::size_t>(header.shape[a]);
+    for (Index n : shape) stride *= static_cast<std::size_t>(n);
+    for (Index length : shape) {
+        const auto n = static_cast<std::size_t>(length);
         stride /= n;
         result += (k % n) * stride;
         k /= n;
@@ -140,11 +128,26 @@ std::size_t place(const Header& header, std::size_t k) {
     return result;
 }
 
-} // namespace
+/// Puts the numbers of a file in Fortran order in row-major order.
+NumberArray reordered(NumberReader& reader) {
+    NumberArray result{{}, reader.shape(), reader.notes()};
+    const Index count = checked_product(result.shape, reader.path());
+    check_memory(count, reader.path());
+    result.values.resize(static_cast<std::size_t>(count));
+    std::vector<double> part(std::size_t{1} << 16);
+    for (std::size_t done = 0; done < result.values.size();) {
+        const std::size_t got = reader.read(part);
+        for (std::size_t k = 0; k < got; ++k)
+            result.values.data()[place(result.shape, done + k)] = part[k];
+        done += got;
+    }
+    return result;
+}
 
-NumberArray parse_npy(const std::filesystem::path& path, std::string_view content) {
-    const Header header = parse_header(path, content);
-    const std::size_t available = (content.size() - header.data_begin) / header.width;
+/// The numbers that the shape states; FileError unless they are there.
+std::size_t count_of(const std::filesystem::path& path, const Header& header,
+                     std::size_t bytes_there) {
+    const std::size_t available = bytes_there / header.width;
     std::size_t count = 1;
     for (Index n : header.shape) {
         // compare before multiplying: a forged shape must neither overflow nor allocate
@@ -154,20 +157,27 @@ NumberArray parse_npy(const std::filesystem::path& path, std::string_view conten
         count *= static_cast<std::size_t>(n);
     }
     if (count > available) // a single number, of shape ()
-        fail(path, fmt::format("a number is stated, {} bytes are there",
-                               content.size() - header.data_begin));
-    NumberArray result{std::vector<double>(count), header.shape, {}};
-    if (count == 0) return result;
-    const char* data = content.data() + header.data_begin;
-    const bool native =
-        header.kind == 'f' && header.width == 8 && header.order != '>' && !header.fortran;
-    if (native && std::endian::native == std::endian::little) {
-        std::memcpy(result.values.data(), data, count * sizeof(double));
-        return result;
-    }
-    for (std::size_t k = 0; k < count; ++k)
-        result.values[k] = number(header, data + place(header, k) * header.width);
-    return result;
+        fail(path, fmt::format("a number is stated, {} bytes are there", bytes_there));
+    return count;
+}
+
+} // namespace
+
+std::unique_ptr<NumberReader> open_npy(const std::filesystem::path& path,
+                                       std::unique_ptr<ByteSource> source) {
+    std::unique_ptr<ByteSource> bytes = sized_and_not_empty(path, std::move(source));
+    const Header header = parse_header(path, *bytes);
+    const std::size_t count =
+        count_of(path, header, static_cast<std::size_t>(bytes->size()) - header.data_begin);
+    RecordLayout layout{.begin = header.data_begin,
+                        .count = count,
+                        .length = header.width,
+                        .order = header.order == '>' ? std::endian::big : std::endian::little,
+                        .fields = {{.place = 0, .kind = kind_of(header)}}};
+    auto reader = std::make_unique<RecordReader>(path.string(), std::move(bytes), std::move(layout),
+                                                 header.shape);
+    if (!header.fortran || header.shape.size() < 2) return reader;
+    return std::make_unique<HeldNumbers>(path.string(), reordered(*reader));
 }
 
 std::string format_npy(const Points& points, const std::vector<Index>& grid) {

@@ -1,52 +1,10 @@
 #include <batten/io/output_file.hpp>
 
 #include <batten/core/counts.hpp>
-#include <batten/core/errors.hpp>
+#include <batten/io/byte_source.hpp>
 #include <batten/io/output_set.hpp>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <fmt/format.h>
-
 namespace batten {
-
-namespace {
-
-/// A C file closed with its scope.
-class File {
-  public:
-    explicit File(const std::filesystem::path& path) : file_(std::fopen(path.c_str(), "rbe")) {}
-    ~File() {
-        if (file_ != nullptr) std::fclose(file_);
-    }
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
-    std::FILE* get() const { return file_; }
-
-  private:
-    std::FILE* file_;
-};
-
-[[noreturn]] void fail(const std::string& name, int error) {
-    throw FileError(fmt::format("{}: cannot be read: {}", name, std::strerror(error)));
-}
-
-std::string read_all(const std::string& name, std::FILE* file) {
-    std::string content;
-    char buffer[1 << 16];
-    std::size_t asked_at = 1 << 26; // a stream may have no end
-    while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) {
-        content.append(buffer, count);
-        if (content.size() < asked_at) continue;
-        asked_at *= 2;
-        check_memory(static_cast<Index>(asked_at / sizeof(double)), name);
-    }
-    if (std::ferror(file) != 0) fail(name, errno);
-    return content;
-}
-
-} // namespace
 
 void write_file(const std::filesystem::path& path, std::string content) {
     OutputSet output;
@@ -55,12 +13,18 @@ void write_file(const std::filesystem::path& path, std::string content) {
 }
 
 std::string read_file(const std::filesystem::path& path) {
-    if (path == "-") return read_all("standard input", stdin);
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error)) fail(path.string(), EISDIR);
-    const File file(path);
-    if (file.get() == nullptr) fail(path.string(), errno);
-    return read_all(path.string(), file.get());
+    const std::unique_ptr<ByteSource> bytes = open_bytes(path, ReadAgain::no);
+    std::string content;
+    std::size_t room =
+        bytes->size() < 0 ? std::size_t{1} << 16U : static_cast<std::size_t>(bytes->size()) + 1;
+    for (std::size_t there = 0;; room *= 2) { // a stream may have no end
+        check_memory(static_cast<Index>(room / sizeof(double)), input_name(path));
+        content.resize(room);
+        there += bytes->read({content.data() + there, room - there});
+        if (there == room) continue;
+        content.resize(there);
+        return content;
+    }
 }
 
 std::string extension(const std::filesystem::path& path) {
@@ -68,6 +32,11 @@ std::string extension(const std::filesystem::path& path) {
     for (char& c : result)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     return result;
+}
+
+std::string inner_extension(const std::filesystem::path& path) {
+    const std::string outer = extension(path);
+    return outer == ".gz" ? extension(path.stem()) : outer;
 }
 
 std::string extension_or(const std::filesystem::path& path, std::string_view otherwise) {

@@ -17,6 +17,9 @@ std::string read_file(const std::filesystem::path& path);
 /// Lower-case extension with its dot.
 std::string extension(const std::filesystem::path& path);
 
+/// The same of what a name ending in .gz holds: .csv of a.csv.gz.
+std::string inner_extension(const std::filesystem::path& path);
+
 /// The extension; a stream without one has that of `otherwise`.
 std::string extension_or(const std::filesystem::path& path, std::string_view otherwise);
 

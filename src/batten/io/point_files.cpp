@@ -15,15 +15,6 @@ namespace batten {
 
 namespace {
 
-/// A file format of points.
-struct PointFormat {
-    std::string_view extension;
-    NumberArray (*parse)(const std::filesystem::path&, std::string_view);
-    std::string (*format)(const Points&, const std::vector<Index>& grid);
-    /// How its points follow each other where no grid is stated.
-    Order order = Order::along_curve;
-};
-
 std::string comma_text(const Points& points, const std::vector<Index>&) {
     return format_text(points, ',');
 }
@@ -32,71 +23,103 @@ std::string blank_text(const Points& points, const std::vector<Index>&) {
 }
 
 constexpr PointFormat point_formats[] = {
-    {".csv", parse_text, comma_text},       {".txt", parse_text, blank_text},
-    {".xyz", parse_text, blank_text},       {".dat", parse_text, blank_text},
-    {".npy", parse_npy, format_npy},        {".ply", parse_ply, {}, Order::none},
-    {".obj", parse_obj, {}, Order::none},   {".stl", parse_stl, {}, Order::none},
-    {".las", parse_las, {}, Order::ground},
+    {".csv", open_text, open_text_for_passes, comma_text},
+    {".txt", open_text, open_text_for_passes, blank_text},
+    {".xyz", open_text, open_text_for_passes, blank_text},
+    {".dat", open_text, open_text_for_passes, blank_text},
+    {".npy", open_npy, open_npy, format_npy},
+    {".ply", open_ply, open_ply, {}, Order::none},
+    {".obj", open_obj, open_obj, {}, Order::none},
+    {".stl", open_stl, open_stl, {}, Order::none},
+    {".las", open_las, open_las, {}, Order::ground},
 };
 
+} // namespace
+
 const PointFormat& point_format(const std::filesystem::path& path) {
-    const std::string wanted = extension_or(path, ".txt");
+    const bool compressed = extension(path) == ".gz";
+    const std::string wanted = compressed ? inner_extension(path) : extension_or(path, ".txt");
     std::vector<std::string_view> known;
     for (const PointFormat& format : point_formats) {
-        if (format.extension == wanted) return format;
-        known.push_back(format.extension);
+        const bool text = format.open == open_text;
+        if (format.extension == wanted && (text || !compressed)) return format;
+        if (text || !compressed) known.push_back(format.extension);
     }
-    throw InvalidInput(
-        fmt::format("{}: {}", path.string(), unknown_name("extension of points", wanted, known)));
+    throw InvalidInput(fmt::format(
+        "{}: {}", path.string(),
+        unknown_name(compressed ? "extension of compressed points" : "extension of points", wanted,
+                     known)));
 }
 
-NumberArray read_numbers(const std::filesystem::path& path) {
-    const PointFormat& format = point_format(path);
-    const std::string content = read_file(path);
-    if (content.empty()) throw FileError(fmt::format("{}: the file is empty", path.string()));
-    return format.parse(path, content);
-}
-
-Samples heights_from(NumberArray array, const std::array<double, 2>& spacing,
-                     const std::filesystem::path& path) {
-    if (array.shape.size() != 2)
+std::array<Index, 2> height_shape(const std::filesystem::path& path,
+                                  const std::vector<Index>& shape) {
+    if (shape.size() != 2)
         throw InvalidInput(fmt::format("{}: heights need a table of 2 axes, got {}", path.string(),
-                                       fmt::join(array.shape, "x")));
-    const std::array<Index, 2> shape{array.shape[0], array.shape[1]};
-    return height_samples(Points(PointSet(std::move(array.values), 1)), shape, spacing);
+                                       fmt::join(shape, "x")));
+    return {shape[0], shape[1]};
 }
 
-Samples points_from(NumberArray array, const std::vector<Index>& grid,
-                    const std::filesystem::path& path) {
-    const std::vector<Index>& shape = array.shape;
+Index point_dim(const std::filesystem::path& path, const std::vector<Index>& shape) {
     if (shape.empty() || shape.size() > 4)
         throw InvalidInput(fmt::format(
             "{}: an array of {} axes; m x dim, or a grid m1 x m2 (x m3) x dim, is needed",
             path.string(), shape.size()));
     const Index dim = shape.size() == 1 ? 1 : shape.back();
-    if (dim < 1 || dim > 16)
+    if (dim < 1 || dim > 16) {
+        const std::string rows = shape[0] < 0 ? "m" : fmt::to_string(shape[0]);
         throw InvalidInput(
-            fmt::format("{}: {} means points of dimension {}, outside 1 to 16{}", path.string(),
-                        fmt::join(shape, "x"), dim,
+            fmt::format("{}: {}x{} means points of dimension {}, outside 1 to 16{}", path.string(),
+                        rows, fmt::join(shape.begin() + 1, shape.end(), "x"), dim,
                         shape.size() == 2 ? "; heights reads it as a grid of heights" : ""));
+    }
+    return dim;
+}
+
+std::vector<Index> point_grid(const std::vector<Index>& shape, const ReadOptions& options) {
+    if (!options.grid.empty()) return options.grid;
+    return shape.size() > 2 ? std::vector<Index>(shape.begin(), shape.end() - 1)
+                            : std::vector<Index>{};
+}
+
+void check_options(const std::filesystem::path& path, const ReadOptions& options) {
+    if (options.heights && !options.grid.empty())
+        throw InvalidInput(fmt::format("{}: a table of heights is a grid already; it is read with "
+                                       "a grid's shape or as heights",
+                                       path.string()));
+}
+
+namespace {
+
+NumberArray read_numbers(const std::filesystem::path& path, const ReadObserver& observer = {}) {
+    const PointFormat& format = point_format(path);
+    return format.open(path, open_bytes(path, ReadAgain::no, observer))->all();
+}
+
+Samples points_from(NumberArray array, const ReadOptions& options,
+                    const std::filesystem::path& path) {
+    const Index dim = point_dim(path, array.shape);
+    const auto count = static_cast<Index>(array.values.size()) / dim;
     Samples samples;
-    if (shape.size() > 2) samples.grid.assign(shape.begin(), shape.end() - 1);
-    if (!grid.empty()) samples.grid = grid;
-    samples.points = Points(PointSet(std::move(array.values), dim));
+    samples.grid = point_grid(array.shape, options);
+    samples.points = std::move(array.values).points(count, dim);
     samples.notes = std::move(array.notes);
     return samples;
+}
+
+Samples heights_from(NumberArray array, const ReadOptions& options,
+                     const std::filesystem::path& path) {
+    const std::array<Index, 2> shape = height_shape(path, array.shape);
+    const auto count = static_cast<Index>(array.values.size());
+    return height_samples(std::move(array.values).points(count, 1), shape, options.spacing);
 }
 
 } // namespace
 
 Samples read_points(const std::filesystem::path& path, const ReadOptions& options) {
-    if (options.heights && !options.grid.empty())
-        throw InvalidInput(fmt::format("{}: a table of heights is a grid already; it is read with "
-                                       "a grid's shape or as heights",
-                                       path.string()));
-    NumberArray array = read_numbers(path);
-    Samples samples = options.heights ? heights_from(std::move(array), options.spacing, path)
-                                      : points_from(std::move(array), options.grid, path);
+    check_options(path, options);
+    NumberArray array = read_numbers(path, options.observer);
+    Samples samples = options.heights ? heights_from(std::move(array), options, path)
+                                      : points_from(std::move(array), options, path);
     if (samples.grid.empty()) samples.order = point_format(path).order;
     check(samples);
     return samples;
@@ -104,7 +127,9 @@ Samples read_points(const std::filesystem::path& path, const ReadOptions& option
 
 PointSet read_table(const std::filesystem::path& path) {
     NumberArray array = read_numbers(path);
-    PointSet table(std::move(array.values), array.shape.size() < 2 ? 1 : array.shape.back());
+    const std::span<const double> values = array.values.values();
+    PointSet table(std::vector<double>(values.begin(), values.end()),
+                   array.shape.size() < 2 ? 1 : array.shape.back());
     for (Index i = 0; i < table.size(); ++i)
         for (double x : table[i])
             if (!std::isfinite(x))
@@ -126,9 +151,10 @@ void check_room(const std::filesystem::path& path, std::span<const Index> counts
 std::string points_content(const std::filesystem::path& path, const Points& points,
                            const std::vector<Index>& grid) {
     const PointFormat& format = point_format(path);
-    if (format.format == nullptr)
-        throw InvalidInput(fmt::format("{}: {} files of points are read, not written",
-                                       path.string(), format.extension));
+    const std::string named = extension_or(path, ".txt");
+    if (format.format == nullptr || named == ".gz")
+        throw InvalidInput(
+            fmt::format("{}: {} files of points are read, not written", path.string(), named));
     check({.points = points, .grid = grid});
     check_room(path, std::array{points.size()}, points.dim());
     return format.format(points, grid);

@@ -1,4 +1,4 @@
-#include <batten/samples/samples.hpp>
+#include <batten/samples/sample_source.hpp>
 
 #include <batten/core/counts.hpp>
 
@@ -14,20 +14,6 @@ namespace {
 
 constexpr Index block_size = 1 << 16;
 constexpr double smallest_part = 1e-250; // of the largest weight: products with it stay numbers
-
-void check_shape(const Samples& samples) {
-    if (samples.size() == 0) throw InvalidInput("samples: there are none");
-    if (samples.dim() < 1 || samples.dim() > 16)
-        throw InvalidInput(fmt::format("samples: dimension {} is outside 1 to 16", samples.dim()));
-    if (samples.grid.empty()) return;
-    if (samples.grid.size() < 2 || samples.grid.size() > 3)
-        throw InvalidInput(
-            fmt::format("grid: {} axes given, 2 or 3 are possible", samples.grid.size()));
-    const Index product = checked_product(samples.grid, "grid");
-    if (product != samples.size())
-        throw InvalidInput(fmt::format("grid: {} needs {} samples, got {}",
-                                       fmt::join(samples.grid, "x"), product, samples.size()));
-}
 
 void check_finite(const Points& points) {
     std::vector<Index> first_bad(static_cast<std::size_t>(block_count(points.size(), block_size)),
@@ -77,6 +63,20 @@ std::string_view to_string(SampleKind kind) {
 void check_sample(std::string_view what, Index i, Index samples) {
     if (i < 0 || i >= samples)
         throw InvalidInput(fmt::format("{} {}: the samples are 0 to {}", what, i, samples - 1));
+}
+
+void check_shape(const Samples& samples) {
+    if (samples.size() == 0) throw InvalidInput("samples: there are none");
+    if (samples.dim() < 1 || samples.dim() > 16)
+        throw InvalidInput(fmt::format("samples: dimension {} is outside 1 to 16", samples.dim()));
+    if (samples.grid.empty()) return;
+    if (samples.grid.size() < 2 || samples.grid.size() > 3)
+        throw InvalidInput(
+            fmt::format("grid: {} axes given, 2 or 3 are possible", samples.grid.size()));
+    const Index product = checked_product(samples.grid, "grid");
+    if (product != samples.size())
+        throw InvalidInput(fmt::format("grid: {} needs {} samples, got {}",
+                                       fmt::join(samples.grid, "x"), product, samples.size()));
 }
 
 void check(const Samples& samples) {
