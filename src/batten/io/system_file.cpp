@@ -1,13 +1,14 @@
 #include <batten/io/system_file.hpp>
 
 #include <batten/core/counts.hpp>
-#include <batten/io/byte_reader.hpp>
+#include <batten/io/buffered_bytes.hpp>
 #include <batten/io/checksum.hpp>
 #include <batten/io/output_file.hpp>
 #include <batten/system/half_stencil.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace batten {
 
@@ -76,7 +77,7 @@ struct Header {
 class Parser {
   public:
     Parser(const std::filesystem::path& path, std::string_view content)
-        : path_(path), content_(content), bytes_(path, content) {}
+        : path_(path), content_(content), bytes_(path, bytes_in_memory(content)) {}
 
     SystemSums operator()() {
         if (!content_.starts_with(magic))
@@ -87,7 +88,7 @@ class Parser {
         const Header header = read_header();
         check_length(header);
         const std::size_t end = content_.size() - sizeof(std::uint64_t);
-        ByteReader last(path_, content_);
+        BufferedBytes last(path_, bytes_in_memory(content_));
         last.seek(end, "the checksum");
         if (last.read<std::uint64_t>("the checksum") != checksum(content_.substr(0, end)))
             fail("damaged: its checksum does not match");
@@ -221,7 +222,7 @@ class Parser {
 
     const std::filesystem::path& path_;
     std::string_view content_;
-    ByteReader bytes_;
+    BufferedBytes bytes_;
 };
 
 } // namespace
