@@ -1,12 +1,16 @@
-// batten's side of the race: loads the case's arrays once, then for every line "THREADS" on
-// standard input runs the fit and prints milliseconds, rms and what it did. Reading files is
-// outside the time.
+// batten's side of the race: loads the case's arrays once, then for every line on standard input
+// prints milliseconds (with the processor's in brackets below), rms and what it did. "THREADS": the
+// kernel, assembly and solution; "fit THREADS": the whole call fit() for the same knots and
+// parameters, deviation included; "chord THREADS N": the same by chord length and for N control
+// points, knots by rule; "read": one thread reads the memory. Reading files is outside the time.
 #include <batten/batten.hpp>
 
 #include <chrono>
+#include <ctime>
 #include <fmt/format.h>
 #include <iostream>
 #include <numeric>
+#include <sstream>
 #include <string>
 
 namespace {
@@ -54,6 +58,38 @@ Answer solve(const Case& c) {
     return {uncentred(control, system->centre()), fmt::format("cg, {} steps", summary.iterations)};
 }
 
+/// The case as a caller of fit() states it: the samples stay where they are and nothing is wanted
+/// for each of them.
+FitOptions options_for(const Case& c, int threads, Index control_points) {
+    FitOptions options;
+    options.threads = threads;
+    options.keep_per_sample = false;
+    if (!c.scattered) options.method.name = "direct";
+    if (control_points > 0) {
+        options.shape.control_points = {control_points};
+        return options;
+    }
+    options.shape.parameters = c.parameters;
+    for (const KnotVector& axis : c.axes)
+        options.shape.knots.emplace_back(axis.knots().begin(), axis.knots().end());
+    return options;
+}
+
+/// A whole call, `rounds` times over where it is short.
+void time_fit(const Case& c, const FitOptions& options, int rounds) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t busy = std::clock();
+    FitReport report;
+    for (int k = 0; k < rounds; ++k) report = fit(c.samples, options).report;
+    const double used = 1e3 * static_cast<double>(std::clock() - busy) / CLOCKS_PER_SEC;
+    const double time = milliseconds_since(start);
+    std::string stages;
+    for (const auto& [stage, seconds] : report.seconds)
+        stages += fmt::format(" {} {:.1f}", stage, 1e3 * seconds);
+    fmt::print("{} {:.17g} {} [{:.4g} ms of processor];{}\n", time / rounds, report.deviation.rms,
+               report.method, used / rounds, stages);
+}
+
 /// One thread's time of summing the case's memory once.
 double read_once(const Case& c) {
     const auto start = std::chrono::steady_clock::now();
@@ -78,8 +114,19 @@ double read_once(const Case& c) {
 int main(int, char** argv) {
     const Case c = load(argv[1], std::stoi(argv[2]), argv[3] == std::string("scattered"));
     for (std::string line; std::getline(std::cin, line);) {
-        if (line == "read") {
+        std::istringstream words(line);
+        std::string word;
+        int threads = 0;
+        Index size = 0;
+        int rounds = 1;
+        words >> word;
+        if (word == "read") {
             fmt::print("{}\n", read_once(c));
+        } else if (word == "fit" || word == "chord") {
+            words >> threads;
+            if (word == "chord") words >> size;
+            words >> rounds;
+            time_fit(c, options_for(c, threads, size), rounds);
         } else {
             const ThreadLimit limit(std::stoi(line));
             const auto start = std::chrono::steady_clock::now();

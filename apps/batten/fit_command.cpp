@@ -3,12 +3,14 @@
 #include "fit_flags.hpp"
 #include "progress.hpp"
 
+#include <batten/core/stopwatch.hpp>
 #include <batten/io/output_set.hpp>
 #include <batten/io/spline_file.hpp>
 #include <batten/iterate/methods.hpp>
 #include <batten/report/html.hpp>
 #include <batten/report/words.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 #include <fstream>
@@ -40,31 +42,43 @@ std::string title_of(const std::string& path) {
     return path == "-" ? "points" : std::filesystem::path(path).stem().string();
 }
 
+/// Whether anything that is written shows the samples one by one.
+bool shows_samples(const FitFlags& flags) {
+    return !flags.report.empty() || std::ranges::any_of(flags.outputs, [](const auto& output) {
+        return spline_format(output).samples;
+    });
+}
+
 void run(const FitFlags& flags, const CLI::App& fit_app) {
     method_entry(flags.method);
     check_files(flags);
     check(flags.exported, fit_app, flags.outputs, flags.report);
     Progress progress(flags.quiet ? Progress::Show::never : Progress::Show::when_slow);
     progress.say("reading " + flags.points);
+    Stopwatch watch;
     const Samples samples =
         samples_of(flags, [&](const ReadProgress& now) { progress.say_read(flags.points, now); });
+    const double reading = watch.lap();
     FitOptions options = options_of(flags, fit_app, samples);
     check_holds(flags, samples, options);
+    options.keep_per_sample = shows_samples(flags);
     if (!flags.report.empty() && flags.history) options.most_frames = 60;
     options.observer = [&](const Iteration& now) {
         progress.say(fmt::format("iteration {}, gradient {:.2e}", now.number, now.gradient_norm));
         return Continue::yes;
     };
     progress.say("fitting");
-    const FitResult result = fit(samples, options);
+    FitResult result = fit(samples, options);
+    auto& seconds = result.report.seconds;
+    seconds.insert(seconds.begin(), {"reading", reading});
     if (!result.report.usable())
         throw SolverError(
             "the iteration broke down: numbers left the finite range; nothing was written");
     Scene scene{.spline = result.spline,
                 .samples = &samples,
                 .title = title_of(flags.points),
-                .deviations = &result.deviations,
-                .parameters = &result.parameters};
+                .deviations = options.keep_per_sample ? &result.deviations : nullptr,
+                .parameters = options.keep_per_sample ? &result.parameters : nullptr};
     apply(flags.exported, scene);
     OutputSet outputs;
     for (const std::string& output : flags.outputs) {

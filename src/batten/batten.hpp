@@ -4,6 +4,7 @@
 // All public headers, bottom floor first.
 #include <batten/core/core.hpp>
 #include <batten/samples/generate.hpp>
+#include <batten/samples/sample_source.hpp>
 #include <batten/samples/samples.hpp>
 #include <batten/parametrize/parametrize.hpp>
 #include <batten/parametrize/project.hpp>

@@ -22,28 +22,38 @@ Index interior_count(int degree, Index n, Closure closure) {
 
 } // namespace
 
-KnotVector knots_from_parameters(std::span<const double> parameters, int degree, Index n,
-                                 Closure closure, KnotPlacement rule) {
+std::vector<KnotPlace> knot_places(Index count, int degree, Index n, Closure closure,
+                                   KnotPlacement rule) {
     check_count(degree, n);
-    const auto m = static_cast<Index>(parameters.size());
-    if (n > m)
+    if (n > count)
         throw InvalidInput(
-            fmt::format("{} control points need at least as many samples, got {}", n, m));
+            fmt::format("{} control points need at least as many samples, got {}", n, count));
     const bool closed = closure == Closure::closed;
-    const bool both_ends = rule == KnotPlacement::both_ends;
-    if (closed && both_ends && n == m) return knots_at_parameters(parameters, degree);
-    const Index count = interior_count(degree, n, closure);
-    const double d = static_cast<double>(m) / static_cast<double>(count + 1);
+    const Index knots = interior_count(degree, n, closure);
+    const double d = static_cast<double>(count) / static_cast<double>(knots + 1);
     // eq. 9.69 puts knot j at place j d - 1 among the samples; its mirror image is at j d, on a
     // closed axis, whose first sample stays, at j d + 1
-    const double shift = !both_ends ? 0 : closed ? 1 : 0.5;
-    std::vector<double> interior;
-    for (Index j = 1; j <= count; ++j) {
+    const double shift = rule != KnotPlacement::both_ends ? 0 : closed ? 1 : 0.5;
+    std::vector<KnotPlace> places;
+    for (Index j = 1; j <= knots; ++j) {
         const double jd = static_cast<double>(j) * d + shift;
         const auto i = static_cast<Index>(std::floor(jd));
-        const double alpha = jd - static_cast<double>(i);
-        const double next = i < m ? parameters[static_cast<std::size_t>(i)] : 1;
-        interior.push_back(std::lerp(parameters[static_cast<std::size_t>(i - 1)], next, alpha));
+        places.push_back({i - 1, jd - static_cast<double>(i)});
+    }
+    return places;
+}
+
+KnotVector knots_from_parameters(std::span<const double> parameters, int degree, Index n,
+                                 Closure closure, KnotPlacement rule) {
+    const auto m = static_cast<Index>(parameters.size());
+    const bool closed = closure == Closure::closed;
+    if (closed && rule == KnotPlacement::both_ends && n == m)
+        return knots_at_parameters(parameters, degree);
+    std::vector<double> interior;
+    for (const auto& [before, part] : knot_places(m, degree, n, closure, rule)) {
+        const auto i = static_cast<std::size_t>(before);
+        const double next = before + 1 < m ? parameters[i + 1] : 1;
+        interior.push_back(std::lerp(parameters[i], next, part));
     }
     if (closed) return knots_around(degree, interior, 0, 1, closure);
     return knots_around(degree, interior, parameters.front(), parameters.back(), closure);

@@ -20,6 +20,18 @@ KnotVector knots_from_parameters(std::span<const double> parameters, int degree,
                                  Closure closure = Closure::open,
                                  KnotPlacement rule = KnotPlacement::data);
 
+/// An interior knot among ascending parameters: `part` of the way from number `before` (0, 1, ...)
+/// to the next; 1 comes after the last.
+struct KnotPlace {
+    Index before;
+    double part;
+};
+
+/// Where that rule puts the interior knots among `count` parameters. Throws the same. Not for as
+/// many control points as closed parameters by both_ends.
+std::vector<KnotPlace> knot_places(Index count, int degree, Index n, Closure closure,
+                                   KnotPlacement rule);
+
 /// Clamped knots for as many control points as parameters, interior knots the means of degree
 /// consecutive parameters [PieglTiller1997, eq. 9.8; LinZhang2011, eq. 38]: for interpolation and
 /// for EPIA.

@@ -88,6 +88,16 @@ Choice automatic(const Problem& problem, Requests asked) {
 
 } // namespace
 
+std::optional<Choice> chosen_in_passes(const FitOptions& options, SampleKind kind, Requests asked) {
+    const Driver& direct = driver("direct");
+    const bool automatic = options.method.name == "auto";
+    const bool sized = asked.has(Request::size) || asked.has(Request::knots);
+    if (kind != SampleKind::sequence || !sized || !direct.passes->covers(asked)) return {};
+    if (automatic) return Choice{&direct, reason_for(direct.name, kind, asked, {})};
+    if (options.method.name == direct.name) return Choice{&direct, {}};
+    return {};
+}
+
 Choice choose(const Problem& problem) {
     const Requests asked = requests_of(problem);
     const std::string& name = problem.options.method.name;

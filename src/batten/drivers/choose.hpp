@@ -15,4 +15,9 @@ struct Choice {
 /// something.
 Choice choose(const Problem& problem);
 
+/// The driver that answers what is asked in passes over a sequence's samples, as long as these
+/// determine every control point: the one that `choose` would name. Nothing where it needs them in
+/// memory.
+std::optional<Choice> chosen_in_passes(const FitOptions& options, SampleKind kind, Requests asked);
+
 } // namespace batten

@@ -48,12 +48,13 @@ std::vector<Driver> table() {
     const Requests boundary{boundaries};
     // a solution depends on no start, is beyond every stop, and its course is one step
     const Requests solved = space | least_squares_terms | held | course;
+    const Requests passed = space | course | Requests{weights, seam};
     const Requests interpolating = space | course | Requests{local};
     const Requests remembering{memory};
     const Requests grown{size, samples, tolerance, weights, start, local, history, stop, outliers};
     return {
         {method_entry("direct"), solved | curves, solved | boundary, solved - rules,
-         fit_least_squares},
+         fit_least_squares, passed},
         iteration("lspia"),
         iteration("mlspia", remembering),
         {method_entry("clspia"), solved | curves, solved | boundary, solved - rules,

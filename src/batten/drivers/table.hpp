@@ -18,6 +18,9 @@ struct Driver : MethodEntry {
     std::optional<Requests> cloud;
     /// Answers the problem; the method is named, as some drivers serve several.
     Fitted (*fit)(const Problem& problem, std::string_view method);
+    /// What of a sequence's column needs no more than passes over the samples
+    /// (drivers/curve_passes.hpp); nothing where the driver knows none.
+    std::optional<Requests> passes{};
 
     const std::optional<Requests>& takes(SampleKind kind) const {
         return kind == SampleKind::sequence ? sequence : kind == SampleKind::grid ? grid : cloud;

@@ -1,6 +1,7 @@
 #include <batten/fit/account.hpp>
 
 #include <batten/measure/deviation.hpp>
+#include <batten/parametrize/step_lengths.hpp>
 #include <batten/problem/held.hpp>
 
 #include <algorithm>
@@ -11,15 +12,18 @@ namespace batten {
 
 namespace {
 
+void note_equal(std::size_t axis, Index equal, std::vector<std::string>& notes) {
+    if (equal > 0)
+        notes.push_back(fmt::format(
+            "axis {}: {} identical consecutive samples share a parameter and count each", axis,
+            equal));
+}
+
 void note_duplicates(const Parameters& parameters, std::vector<std::string>& notes) {
     for (std::size_t axis = 0; axis < parameters.axes.size(); ++axis) {
-        const auto& t = parameters.axes[axis];
-        Index equal = 0;
-        for (std::size_t i = 1; i < t.size(); ++i) equal += t[i] == t[i - 1] ? 1 : 0;
-        if (equal > 0)
-            notes.push_back(fmt::format(
-                "axis {}: {} identical consecutive samples share a parameter and count each", axis,
-                equal));
+        EqualRuns runs;
+        runs.add(parameters.axes[axis]);
+        note_equal(axis, runs.equal(), notes);
     }
 }
 
@@ -43,14 +47,14 @@ double part_of_tolerance(const std::vector<double>& deviations,
 }
 
 /// What was stated, and what the spline and the driver's course came to.
-std::vector<Goal> judged(const FitReport& report, const Problem& problem) {
+std::vector<Goal> judged(const FitReport& report, const FitOptions& options, bool tolerance) {
     constexpr double rounding = 1 + 1e-9;
     std::vector<Goal> goals;
     const auto state = [&](const char* name, double stated, double reached) {
         goals.push_back({name, stated, reached, reached <= stated * rounding});
     };
-    const StopRule& stop = problem.options.stop;
-    if (!problem.tolerance.empty()) {
+    const StopRule& stop = options.stop;
+    if (tolerance) {
         const bool within = report.tolerance_ratio <= rounding &&
                             report.termination != Termination::tolerance_not_met;
         goals.push_back(
@@ -59,13 +63,13 @@ std::vector<Goal> judged(const FitReport& report, const Problem& problem) {
         state("deviation", stop.deviation, report.deviation.maximum);
     }
     // a direct solution's is rounding, but where something must hold: then it is what that costs
-    const bool direct = report.method == "direct" && !problem.options.hold.equalities() &&
-                        problem.options.hold.preserve == Preserve::nothing;
+    const bool direct = report.method == "direct" && !options.hold.equalities() &&
+                        options.hold.preserve == Preserve::nothing;
     if (stop.gradient > 0 && (report.iterated() || direct))
         state("gradient", stop.gradient, report.gradient_norm);
-    const double least = exactness * problem.size;
-    const bool locked = report.held_back > least;                // before its stop
-    const bool unfinished = problem.options.smooth.lambda > 0 && // and nobody asked for less
+    const double least = exactness * report.data_size;
+    const bool locked = report.held_back > least;        // before its stop
+    const bool unfinished = options.smooth.lambda > 0 && // and nobody asked for less
                             report.termination == Termination::iteration_limit &&
                             stop.max_iterations == StopRule().max_iterations;
     if ((locked || unfinished) && stop.relative_gradient > 0)
@@ -106,22 +110,51 @@ std::string verdict_of(const FitReport& report, Termination before) {
            "them towards zero";
 }
 
+/// What the spline and the samples are.
+void describe(FitReport& report, const Spline& spline, Index samples, double size) {
+    report.kind = kind_name(spline);
+    report.samples = samples;
+    report.dim = spline.dim();
+    report.control_shape = free_shape(spline.axes());
+    for (const KnotVector& axis : spline.axes()) {
+        report.degree.push_back(axis.degree());
+        report.closures.push_back(axis.closure());
+    }
+    report.data_size = size;
+}
+
+/// What was measured against what was stated.
+void judge(FitReport& report, const FitOptions& options, bool tolerance) {
+    if (options.keep_history && report.history.empty()) // nothing came before the answer
+        report.history.push_back({0, report.gradient_norm, 0, report.deviation.maximum,
+                                  report.constraint_error * report.constraint_error});
+    report.goals = judged(report, options, tolerance);
+    const Termination before = report.termination;
+    report.termination = ending(report);
+    report.verdict = verdict_of(report, before);
+}
+
 } // namespace
+
+FitResult accounted(Passed passed, const std::vector<std::string>& notes,
+                    const FitOptions& options) {
+    Fitted& fitted = passed.fitted;
+    FitReport& report = fitted.report;
+    describe(report, fitted.spline, passed.samples, passed.size);
+    report.notes = notes;
+    note_equal(0, passed.equal, report.notes);
+    report.deviation = passed.deviation;
+    judge(report, options, false);
+    return {std::move(fitted.spline), std::move(report), std::move(fitted.parameters),
+            std::move(fitted.deviations)};
+}
 
 FitResult accounted(Fitted fitted, const Problem& problem) {
     const Samples& samples = problem.samples;
     const HoldOptions& hold = problem.options.hold;
     const Spline& spline = fitted.spline;
     FitReport report = std::move(fitted.report);
-    report.kind = kind_name(spline);
-    report.samples = samples.size();
-    report.dim = samples.dim();
-    report.control_shape = free_shape(spline.axes());
-    for (const KnotVector& axis : spline.axes()) {
-        report.degree.push_back(axis.degree());
-        report.closures.push_back(axis.closure());
-    }
-    report.data_size = problem.size;
+    describe(report, spline, samples.size(), problem.size);
     std::vector<std::string> notes = samples.notes;
     if (problem.tolerance.empty()) note_duplicates(fitted.parameters, notes);
     report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
@@ -138,9 +171,6 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
                                   "direction, or has none; no number says how far off that is");
     report.boundaries = static_cast<Index>(hold.boundaries.size());
     report.boundary_error = boundary_error(spline, hold.boundaries);
-    if (problem.options.keep_history && report.history.empty()) // nothing came before the answer
-        report.history.push_back({0, report.gradient_norm, 0, report.deviation.maximum,
-                                  report.constraint_error * report.constraint_error});
     if (!problem.tolerance.empty()) {
         report.tolerance_ratio = part_of_tolerance(away, problem.tolerance);
         double largest = 0; // an infinite one is of a sample that may be anywhere
@@ -148,10 +178,7 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
             if (std::isfinite(t)) largest = std::max(largest, t);
         if (largest > report.tolerance) report.largest_tolerance = largest;
     }
-    report.goals = judged(report, problem);
-    const Termination before = report.termination;
-    report.termination = ending(report);
-    report.verdict = verdict_of(report, before);
+    judge(report, problem.options, !problem.tolerance.empty());
     return {std::move(fitted.spline), std::move(report), std::move(fitted.parameters),
             std::move(away)};
 }

@@ -1,7 +1,9 @@
 #include <batten/fit/fit.hpp>
 
+#include <batten/core/counts.hpp>
 #include <batten/core/stopwatch.hpp>
 #include <batten/drivers/choose.hpp>
+#include <batten/drivers/curve_passes.hpp>
 #include <batten/fit/account.hpp>
 #include <batten/fit/rescale.hpp>
 #include <batten/fit/reweight.hpp>
@@ -9,6 +11,8 @@
 #include <batten/measure/deviation.hpp>
 #include <batten/problem/subset.hpp>
 #include <batten/robust/outliers.hpp>
+#include <batten/samples/passes.hpp>
+#include <batten/samples/scan.hpp>
 #include <batten/system/roughness.hpp>
 
 #include <algorithm>
@@ -91,19 +95,26 @@ FitResult with_outliers(FitResult result, const Problem& problem,
     return result;
 }
 
-} // namespace
+/// Without what nobody wants.
+FitResult kept(FitResult result, const FitOptions& options) {
+    if (options.keep_per_sample) return result;
+    result.parameters = {};
+    result.deviations = {};
+    return result;
+}
 
-FitResult fit(const Samples& samples, const FitOptions& options) {
-    const ThreadLimit limit(options.threads);
-    check_settings(method_entry(options.method.name), options.method.settings);
-    if (const double unit = usual_unit(samples.points); unit != 1)
-        return rescaled(fit(rescaled(samples, unit), rescaled(options, unit)), 1 / unit);
-    if (const double unit = usual_weight(samples.weights, options); unit != 1) {
-        check(samples); // names what the caller stated
-        return reweighted(fit(reweighted(samples, unit), reweighted(options, unit)), unit);
-    }
+/// Of samples in memory, whatever is asked.
+FitResult fit_in_memory(const Samples& samples, const FitOptions& options) {
     Stopwatch watch;
-    Problem problem = problem_of(samples, options);
+    const PointScan scan = scanned(samples.points);
+    if (const double unit = usual_unit(scan.box()); unit != 1)
+        return rescaled(fit_in_memory(rescaled(samples, unit), rescaled(options, unit)), 1 / unit);
+    if (const double unit = usual_weight(samples.weights, options); unit != 1) {
+        check(samples, scan); // names what the caller stated
+        return reweighted(fit_in_memory(reweighted(samples, unit), reweighted(options, unit)),
+                          unit);
+    }
+    Problem problem = problem_of(samples, options, scan);
     if (!samples.weights.empty() &&
         std::ranges::all_of(samples.weights, [](double w) { return w == 1; })) {
         choose(problem); // refuses what cannot weigh samples
@@ -113,6 +124,67 @@ FitResult fit(const Samples& samples, const FitOptions& options) {
     choose(problem); // refuses what cannot be before the work is done
     const WithoutOutliers found = without_outliers(problem);
     return with_outliers(solved(found.rest, watch.lap()), problem, found.outliers);
+}
+
+/// A source's samples, read into memory.
+struct Held {
+    Samples samples;
+    double seconds = 0;
+};
+
+Held held(SampleSource& source) {
+    Stopwatch watch;
+    const Index dim = source.dim();
+    const auto check = [&](Index count) {
+        check_memory(count * dim, "samples in memory, which what is asked needs");
+    };
+    if (source.size() > 0) check(source.size());
+    std::vector<double> values;
+    std::vector<double> weights;
+    if (source.size() > 0) values.reserve(static_cast<std::size_t>(source.size() * dim));
+    source.rewind();
+    for (Points points = source.next(chunk_samples); !points.empty();
+         points = source.next(chunk_samples)) {
+        const std::size_t count = static_cast<std::size_t>(points.size() * dim);
+        if (values.size() + count > values.capacity())
+            check(2 * static_cast<Index>(values.capacity()) / dim);
+        values.insert(values.end(), points.data(), points.data() + count);
+        const auto own = source.weights();
+        weights.insert(weights.end(), own.begin(), own.end());
+    }
+    return {{.points = PointSet(std::move(values), dim),
+             .grid = source.grid(),
+             .weights = std::move(weights),
+             .order = source.order(),
+             .spacing = source.spacing(),
+             .notes = source.notes()},
+            watch.lap()};
+}
+
+} // namespace
+
+FitResult fit(SampleSource& source, const FitOptions& options) {
+    const ThreadLimit limit(options.threads);
+    check_settings(method_entry(options.method.name), options.method.settings);
+    const Index before = source.bytes();
+    if (auto passed = fit_in_passes(source, options))
+        return accounted(std::move(*passed), source.notes(), options);
+    const Held in_memory = held(source);
+    FitResult result = fit_in_memory(in_memory.samples, options);
+    result.report.bytes_read = source.bytes() - before;
+    auto& seconds = result.report.seconds;
+    seconds.insert(seconds.begin(), {"reading", in_memory.seconds});
+    return kept(std::move(result), options);
+}
+
+FitResult fit(const Samples& samples, const FitOptions& options) {
+    const ThreadLimit limit(options.threads);
+    check_settings(method_entry(options.method.name), options.method.settings);
+    check_shape(samples);
+    MemorySource source(samples);
+    if (auto passed = fit_in_passes(source, options))
+        return accounted(std::move(*passed), samples.notes, options);
+    return kept(fit_in_memory(samples, options), options);
 }
 
 } // namespace batten

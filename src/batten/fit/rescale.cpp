@@ -39,16 +39,6 @@ Observer unscaled(const Observer& observer, double factor) {
 
 } // namespace
 
-double usual_unit(const Points& points) {
-    constexpr int far = 200;
-    double largest = 0;
-    for (Index i = 0; i < points.size() * points.dim(); ++i)
-        largest = std::max(largest, std::abs(points.data()[i]));
-    if (!(largest > 0) || !std::isfinite(largest)) return 1;
-    const int exponent = std::ilogb(largest);
-    return std::abs(exponent) <= far ? 1 : std::ldexp(1.0, -exponent);
-}
-
 Samples rescaled(Samples samples, double factor) {
     samples.points = Points(scaled(PointSet(samples.points), factor));
     return samples;

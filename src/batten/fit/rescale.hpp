@@ -5,10 +5,6 @@
 
 namespace batten {
 
-/// The power of two by which lengths are multiplied so that their squares and products stay in the
-/// range of numbers; 1 for coordinates of usual sizes, 2^-200 to 2^200.
-double usual_unit(const Points& points);
-
 /// The same samples and options in a unit in which lengths are `factor` times as large: only
 /// exponents change, no digit.
 Samples rescaled(Samples samples, double factor);

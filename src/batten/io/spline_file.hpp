@@ -67,6 +67,8 @@ struct SplineFormat {
     SceneDetail shows = SceneDetail::none;
     /// One sentence on what the file loses of the scene, empty where nothing is to be said.
     std::function<std::string(const Scene&)> note{};
+    /// Whether the scene's samples are shown with their deviations.
+    bool samples = false;
 };
 
 /// The formats known now, in order of registration.

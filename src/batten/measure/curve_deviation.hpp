@@ -11,4 +11,8 @@ namespace batten {
 std::vector<double> curve_deviations(const Spline& curve, const Points& points,
                                      std::span<const double> parameters);
 
+/// The same of points (count x dim) one after the other into `out`, one for each parameter.
+void curve_deviations(const Spline& curve, const double* points, std::span<const double> parameters,
+                      double* out);
+
 } // namespace batten

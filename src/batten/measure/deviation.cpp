@@ -1,6 +1,9 @@
 #include <batten/measure/deviation.hpp>
 
+#include <batten/core/lane_vectors.hpp>
+#include <batten/core/vector_clones.hpp>
 #include <batten/measure/curve_deviation.hpp>
+#include <batten/samples/passes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +13,19 @@ namespace batten {
 namespace {
 
 constexpr Index block_size = 4096;
+
+BATTEN_VECTOR_CLONES
+void add_squares(const double* x, Index count, Lanes* squares, Lanes* largest) {
+    LaneVector sum = load(squares->value.data());
+    LaneVector most = load(largest->value.data());
+    for (Index k = 0; k < count; k += lanes) {
+        const LaneVector v = load(x + k);
+        sum += v * v;
+        most = v > most ? v : most;
+    }
+    store(sum, squares->value.data());
+    store(most, largest->value.data());
+}
 
 std::vector<double> lengths(const PointSet& values, const Points& points) {
     std::vector<double> result(static_cast<std::size_t>(points.size()));
@@ -41,18 +57,53 @@ std::vector<double> deviations(const Spline& spline, const Samples& samples,
                                            : parametric_deviations(spline, samples, parameters);
 }
 
-Deviation summarise(const std::vector<double>& deviations, DeviationKind kind) {
-    Deviation result{.maximum = 0, .rms = 0, .worst_sample = 0, .kind = kind};
-    double sum = 0;
-    for (std::size_t i = 0; i < deviations.size(); ++i) {
-        sum += deviations[i] * deviations[i];
-        if (deviations[i] > result.maximum) {
-            result.maximum = deviations[i];
-            result.worst_sample = static_cast<Index>(i);
-        }
+DeviationPart measured(std::span<const double> deviations) {
+    Lanes squares;
+    Lanes largest;
+    const auto count = static_cast<Index>(deviations.size());
+    const Index whole = count / lanes * lanes;
+    add_squares(deviations.data(), whole, &squares, &largest);
+    for (Index k = whole; k < count; ++k) {
+        const double x = deviations[static_cast<std::size_t>(k)];
+        const auto lane = static_cast<std::size_t>(k - whole);
+        squares.value[lane] += x * x;
+        largest.value[lane] = std::max(largest.value[lane], x);
     }
-    result.rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, deviations.size())));
-    return result;
+    return {squares.sum(), *std::ranges::max_element(largest.value)};
+}
+
+void DeviationSum::add(const DeviationPart& part, std::span<const double> deviations) {
+    squares_ += part.squares;
+    if (part.maximum > maximum_) {
+        maximum_ = part.maximum;
+        worst_ = count_ + (std::ranges::find(deviations, maximum_) - deviations.begin());
+    }
+    count_ += static_cast<Index>(deviations.size());
+}
+
+Deviation DeviationSum::deviation(DeviationKind kind) const {
+    return {.maximum = maximum_,
+            .rms = std::sqrt(squares_ / static_cast<double>(std::max<Index>(1, count_))),
+            .worst_sample = worst_,
+            .kind = kind};
+}
+
+Deviation summarise(const std::vector<double>& deviations, DeviationKind kind) {
+    const auto count = static_cast<Index>(deviations.size());
+    const auto chunk = [&](const Block& block) {
+        return std::span(deviations)
+            .subspan(static_cast<std::size_t>(block.begin),
+                     static_cast<std::size_t>(block.end - block.begin));
+    };
+    std::vector<DeviationPart> parts(static_cast<std::size_t>(block_count(count, chunk_samples)));
+    for_each_block(count, chunk_samples, [&](const Block& block) {
+        parts[static_cast<std::size_t>(block.index)] = measured(chunk(block));
+    });
+    DeviationSum sum;
+    for (Index k = 0; k < static_cast<Index>(parts.size()); ++k)
+        sum.add(parts[static_cast<std::size_t>(k)],
+                chunk({k, k * chunk_samples, std::min(count, (k + 1) * chunk_samples)}));
+    return sum.deviation(kind);
 }
 
 } // namespace batten

@@ -3,6 +3,8 @@
 #include <batten/parametrize/parametrize.hpp>
 #include <batten/spline/spline.hpp>
 
+#include <span>
+
 namespace batten {
 
 /// What the deviation of a sample is measured against.
@@ -28,6 +30,27 @@ std::vector<double> parametric_deviations(const Spline& spline, const Samples& s
 /// One deviation per sample, of the given kind.
 std::vector<double> deviations(const Spline& spline, const Samples& samples,
                                const Parameters& parameters, DeviationKind kind);
+
+/// Sum of squares and maximum of some deviations.
+struct DeviationPart {
+    double squares = 0;
+    double maximum = 0;
+};
+DeviationPart measured(std::span<const double> deviations);
+
+/// Deviations that pass by in chunks, each measured beforehand, on whatever thread.
+class DeviationSum {
+  public:
+    /// Of the deviations that follow those before.
+    void add(const DeviationPart& part, std::span<const double> deviations);
+    Deviation deviation(DeviationKind kind) const;
+
+  private:
+    Index count_ = 0;
+    double squares_ = 0;
+    double maximum_ = 0;
+    Index worst_ = 0;
+};
 
 /// Maximum, its first sample and root mean square of the given deviations.
 Deviation summarise(const std::vector<double>& deviations, DeviationKind kind);

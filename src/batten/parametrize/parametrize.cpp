@@ -1,5 +1,9 @@
 #include <batten/parametrize/parametrize.hpp>
 
+#include <batten/core/vector_clones.hpp>
+#include <batten/parametrize/step_lengths.hpp>
+#include <batten/samples/passes.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -16,25 +20,30 @@ double step_length(const Points& points, Index from, Index to, Parametrization r
     return rule == Parametrization::centripetal ? std::sqrt(length) : length;
 }
 
-constexpr Index block_size = 1 << 15;
-
 /// Accumulated step lengths of a strand into `t`; returns the whole length. In blocks, whose sums
 /// are added in order.
 double accumulate(const Points& points, const Strand& strand, Parametrization rule,
                   std::vector<double>& t) {
-    std::vector<double> offset(static_cast<std::size_t>(block_count(strand.count, block_size)));
-    for_each_block(strand.count, block_size, [&](const Block& block) {
+    std::vector<double> offset(static_cast<std::size_t>(block_count(strand.count, chunk_samples)));
+    for_each_block(strand.count, chunk_samples, [&](const Block& block) {
         double sum = 0;
-        for (Index i = block.begin; i < block.end; ++i) {
-            if (i > 0) sum += step_length(points, strand[i - 1], strand[i], rule);
-            t[static_cast<std::size_t>(i)] = sum;
+        if (strand.stride == 1) {
+            const double* first = points[strand[block.begin]].data();
+            sum = accumulate_steps(first, block.end - block.begin, points.dim(),
+                                   block.begin > 0 ? first - points.dim() : nullptr, rule,
+                                   t.data() + block.begin);
+        } else {
+            for (Index i = block.begin; i < block.end; ++i) {
+                if (i > 0) sum += step_length(points, strand[i - 1], strand[i], rule);
+                t[static_cast<std::size_t>(i)] = sum;
+            }
         }
         offset[static_cast<std::size_t>(block.index)] = sum;
     });
     double before = 0;
     for (double& sum : offset) before += std::exchange(sum, before);
     if (offset.size() > 1)
-        for_each_block(strand.count, block_size, [&](const Block& block) {
+        for_each_block(strand.count, chunk_samples, [&](const Block& block) {
             for (Index i = block.begin; i < block.end; ++i)
                 t[static_cast<std::size_t>(i)] += offset[static_cast<std::size_t>(block.index)];
         });
@@ -63,8 +72,7 @@ std::vector<double> averaged(const Samples& samples, std::size_t axis, Parametri
                              Closure closure) {
     const GridIndex grid(samples.shape());
     const Index count = grid.length(axis);
-    if (count < 2)
-        throw InvalidInput(fmt::format("axis {}: {} sample, at least 2 are needed", axis, count));
+    check_strand(count, axis);
     if (rule == Parametrization::uniform) return uniform(count, closure);
     std::vector<double> sum(static_cast<std::size_t>(count));
     std::vector<double> scratch(sum.size());
@@ -72,29 +80,18 @@ std::vector<double> averaged(const Samples& samples, std::size_t axis, Parametri
     grid.for_each_strand(axis, [&](const Strand& strand) {
         if (add_normalised(samples.points, strand, rule, closure, scratch, sum)) ++used;
     });
-    if (used == 0)
-        throw InvalidInput(fmt::format(
-            "axis {}: all points are identical; a curve through them has no length", axis));
+    if (used == 0) throw no_length(axis);
     for (double& t : sum) t /= static_cast<double>(used);
     if (closure == Closure::open) sum.back() = 1;
     return sum;
 }
 
-void check_ascending(const std::vector<double>& t, Index count, std::size_t axis) {
-    if (static_cast<Index>(t.size()) != count)
-        throw InvalidInput(
-            fmt::format("axis {}: {} parameters given for {} samples", axis, t.size(), count));
-    for (std::size_t i = 0; i < t.size(); ++i) {
-        if (!std::isfinite(t[i]))
-            throw InvalidInput(
-                fmt::format("axis {}: parameter {} is not a finite number", axis, i));
-        if (i > 0 && t[i] < t[i - 1])
-            throw InvalidInput(
-                fmt::format("axis {}: parameter {} = {} is less than the one before, {}", axis, i,
-                            t[i], t[i - 1]));
-    }
-    if (!(t.back() > t.front()))
-        throw InvalidInput(fmt::format("axis {}: all parameters are {}", axis, t.front()));
+/// Neighbours that are not in order, or no numbers.
+BATTEN_VECTOR_CLONES
+Index descents(const double* t, Index count) {
+    Index found = 0;
+    for (Index i = 1; i < count; ++i) found += t[i] >= t[i - 1] ? 0 : 1;
+    return found;
 }
 
 void check_scattered(const Parameters& parameters, const Samples& samples) {
@@ -159,14 +156,58 @@ PointSet parameter_rows(const Parameters& parameters) {
     return rows;
 }
 
+void check_strand(Index samples, std::size_t axis) {
+    if (samples < 2)
+        throw InvalidInput(fmt::format("axis {}: {} sample, at least 2 are needed", axis, samples));
+}
+
+InvalidInput no_length(std::size_t axis) {
+    return InvalidInput(
+        fmt::format("axis {}: all points are identical; a curve through them has no length", axis));
+}
+
+void check_parameter_count(Index given, Index samples, std::size_t axis) {
+    if (given != samples)
+        throw InvalidInput(
+            fmt::format("axis {}: {} parameters given for {} samples", axis, given, samples));
+}
+
+void check_ascending(std::span<const double> t, Index begin, Index end, std::size_t axis) {
+    const auto first = static_cast<std::size_t>(begin);
+    const auto last = static_cast<std::size_t>(end);
+    if (first >= last) return;
+    const std::size_t before = first > 0 ? first - 1 : 0;
+    if (std::isfinite(t[first]) && std::isfinite(t[last - 1]) &&
+        descents(t.data() + before, static_cast<Index>(last - before)) == 0)
+        return;
+    for (std::size_t i = first; i < last; ++i) {
+        if (!std::isfinite(t[i]))
+            throw InvalidInput(
+                fmt::format("axis {}: parameter {} is not a finite number", axis, i));
+        if (i > 0 && t[i] < t[i - 1])
+            throw InvalidInput(
+                fmt::format("axis {}: parameter {} = {} is less than the one before, {}", axis, i,
+                            t[i], t[i - 1]));
+    }
+}
+
+void check_range(std::span<const double> t, std::size_t axis) {
+    if (!(t.back() > t.front()))
+        throw InvalidInput(fmt::format("axis {}: all parameters are {}", axis, t.front()));
+}
+
 void check(const Parameters& parameters, const Samples& samples) {
     if (parameters.is_scattered()) return check_scattered(parameters, samples);
     const std::vector<Index> shape = samples.shape();
     if (parameters.axes.size() != shape.size())
         throw InvalidInput(fmt::format("parameters: given for {} axes, the samples have {}",
                                        parameters.axes.size(), shape.size()));
-    for (std::size_t axis = 0; axis < shape.size(); ++axis)
-        check_ascending(parameters.axes[axis], shape[axis], axis);
+    for (std::size_t axis = 0; axis < shape.size(); ++axis) {
+        const std::vector<double>& t = parameters.axes[axis];
+        check_parameter_count(static_cast<Index>(t.size()), shape[axis], axis);
+        check_ascending(t, 0, shape[axis], axis);
+        check_range(t, axis);
+    }
 }
 
 } // namespace batten

@@ -2,6 +2,7 @@
 
 #include <batten/samples/samples.hpp>
 
+#include <span>
 #include <vector>
 
 namespace batten {
@@ -49,5 +50,16 @@ PointSet parameter_rows(const Parameters& parameters);
 /// Throws InvalidInput unless the parameters fit the samples in number and are finite, ascending
 /// and, per axis, not all equal.
 void check(const Parameters& parameters, const Samples& samples);
+
+/// The parts of it along an axis: the number of parameters, those from `begin` to before `end`
+/// (finite and not less than the ones before them), and that not all are equal.
+void check_parameter_count(Index given, Index samples, std::size_t axis);
+void check_ascending(std::span<const double> t, Index begin, Index end, std::size_t axis);
+void check_range(std::span<const double> t, std::size_t axis);
+
+/// Throws InvalidInput unless there are at least two samples along the axis.
+void check_strand(Index samples, std::size_t axis);
+/// What to throw where all samples along an axis are one point.
+InvalidInput no_length(std::size_t axis);
 
 } // namespace batten

@@ -154,6 +154,9 @@ struct FitOptions {
     StopRule stop{};
     /// Keep an entry per iteration in the report.
     bool keep_history = false;
+    /// Fill FitResult::parameters and FitResult::deviations: two numbers per sample and axis, whose
+    /// memory may take longer than a fit that works in passes.
+    bool keep_per_sample = true;
     /// Keep about this many polygons of the iterations in the report; 0: none.
     Index most_frames = 0;
     /// Threads for all passes; 0 takes every core. Results do not depend on it.

@@ -1,9 +1,12 @@
 #include <batten/problem/plan.hpp>
 
 #include <batten/basis/place_knots.hpp>
+#include <batten/core/counts.hpp>
+#include <batten/parametrize/step_lengths.hpp>
 #include <batten/problem/held.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -30,12 +33,6 @@ auto on_axis(std::size_t axis, Work work) {
     }
 }
 
-/// Where an axis's parameters begin and end.
-struct Extent {
-    double begin;
-    double end;
-};
-
 Extent extent_of(const Parameters& parameters, std::size_t axis) {
     if (!parameters.is_scattered())
         return {parameters.axes[axis].front(), parameters.axes[axis].back()};
@@ -50,12 +47,6 @@ KnotVector given_knots(const std::vector<double>& knots, int degree, Closure clo
         throw InvalidInput(fmt::format("parameters [{}, {}] are outside the knots' domain [{}, {}]",
                                        extent.begin, extent.end, result.begin(), result.end()));
     return result;
-}
-
-/// The rule for knots where the options leave it open: that of the papers for their methods.
-KnotPlacement placement_of(const FitOptions& options) {
-    if (options.shape.placement) return *options.shape.placement;
-    return options.method.name == "auto" ? KnotPlacement::both_ends : KnotPlacement::data;
 }
 
 /// The parameters that differ, by more than a small part of their range.
@@ -77,50 +68,80 @@ KnotVector with_seam(const KnotVector& knots, int copies) {
 }
 
 /// The parameters among which knots are placed: each once where what is wanted is smooth, or where
-/// as many samples share one as are in a span, for knots would meet there.
-std::vector<double> knot_places(const Problem& problem, std::size_t axis, Index n) {
+/// knots would meet.
+std::vector<double> places_of(const Problem& problem, std::size_t axis, Index n) {
     const std::vector<double>& t = problem.parameters.axes[axis];
     const auto m = static_cast<Index>(t.size());
     if (problem.options.smooth.wanted) return apart(t);
-    const Index spans = n - problem.axes.degree[axis];
-    Index run = 1;
-    Index longest = 1;
-    for (Index i = 1; i < m; ++i) {
-        run = t[static_cast<std::size_t>(i)] == t[static_cast<std::size_t>(i - 1)] ? run + 1 : 1;
-        longest = std::max(longest, run);
-    }
-    const bool meet = n < m && (longest - 1) * spans >= m;
-    return meet ? apart(t) : t;
+    EqualRuns runs;
+    runs.add(t);
+    return knots_meet(runs.longest(), m, n, problem.axes.degree[axis]) ? apart(t) : t;
 }
 
 KnotVector axis_knots(const Problem& problem, std::size_t axis) {
-    const ShapeOptions& shape = problem.options.shape;
-    const AxisPlan& plan = problem.axes;
-    const Extent extent = extent_of(problem.parameters, axis);
-    const int degree = plan.degree[axis];
-    const Closure closure = plan.closures[axis];
-    if (!shape.knots.empty()) return given_knots(shape.knots[axis], degree, closure, extent);
-    const bool closed = closure == Closure::closed;
-    const int copies =
-        closed && shape.seam_continuity >= 0 ? degree - 1 - shape.seam_continuity : 0;
-    const Index n = plan.control_points[axis] - copies;
-    if (n < degree + 1)
-        throw InvalidInput(
-            fmt::format("degree {} with continuity C{} at the seam needs at least {} "
-                        "control points, got {}",
-                        degree, shape.seam_continuity, degree + 1 + copies, n + copies));
-    const KnotPlacement rule = placement_of(problem.options);
-    const bool even = rule == KnotPlacement::uniform || problem.kind == SampleKind::cloud;
-    const std::vector<double> places = even ? std::vector<double>() : knot_places(problem, axis, n);
-    const bool fewer = static_cast<Index>(places.size()) < n;
-    const KnotVector knots =
-        even || fewer
-            ? uniform_knots(degree, n, closed ? 0 : extent.begin, closed ? 1 : extent.end, closure)
-            : knots_from_parameters(places, degree, n, closure, rule);
-    return with_seam(knots, copies);
+    const KnotPlacement rule = placement_of(problem.options, problem.kind);
+    return axis_knots(problem.options, problem.axes, axis, rule,
+                      extent_of(problem.parameters, axis),
+                      [&](Index n) -> std::optional<KnotVector> {
+                          const std::vector<double> places = places_of(problem, axis, n);
+                          if (static_cast<Index>(places.size()) < n) return std::nullopt;
+                          return knots_from_parameters(places, problem.axes.degree[axis], n,
+                                                       problem.axes.closures[axis], rule);
+                      });
+}
+
+/// Along an axis of a sequence or grid there are no more control points than samples.
+void check_counts(const AxisPlan& axes, SampleKind kind, const std::vector<Index>& shape) {
+    if (kind == SampleKind::cloud) return;
+    const std::vector<Index>& n = axes.control_points;
+    for (std::size_t k = 0; k < n.size(); ++k)
+        if (shape[k] >= 0 && n[k] > shape[k])
+            throw InvalidInput(
+                fmt::format("axis {}: {} control points need at least as many samples, got {}", k,
+                            n[k], shape[k]));
+}
+
+/// Memory must hold the control points, and of a cloud the normal system: half of the numbers for
+/// the control points within degree on each side, for each.
+void check_net(const AxisPlan& axes, SampleKind kind, Index dim) {
+    constexpr std::string_view what = "control points";
+    Index system = 1;
+    if (kind == SampleKind::cloud)
+        for (int degree : axes.degree) system *= system == 1 ? degree + 1 : 2 * degree + 1;
+    const std::array numbers{checked_product(axes.control_points, what), std::max(dim, system)};
+    check_memory(checked_product(numbers, what), what);
+}
+
+void check_seam(const FitOptions& options, const AxisPlan& axes) {
+    const int order = options.shape.seam_continuity;
+    if (order < 0) return;
+    if (axes.count() != 1)
+        throw InvalidInput("closed: the continuity at a seam is for curves, not for axes of a "
+                           "surface or volume");
+    if (axes.closures[0] == Closure::open)
+        throw InvalidInput(fmt::format("continuity C{} at the seam: the curve is open", order));
+    if (order > axes.degree[0] - 1)
+        throw InvalidInput(fmt::format("closed: continuity C{} at the seam is more than degree {} "
+                                       "has anywhere, C{}",
+                                       order, axes.degree[0], axes.degree[0] - 1));
 }
 
 } // namespace
+
+void check_smoothing(const SmoothOptions& smooth, const AxisPlan& axes) {
+    if (!smooth.wanted) return;
+    if (smooth.order < 2 || smooth.order > 3)
+        throw InvalidInput(
+            fmt::format("smoothing: the derivative's order {} is not 2 or 3", smooth.order));
+    if (!(smooth.lambda >= 0) || !std::isfinite(smooth.lambda))
+        throw InvalidInput(
+            fmt::format("smoothing: the factor {} must be positive and finite", smooth.lambda));
+    for (int degree : axes.degree)
+        if (degree < smooth.order)
+            throw InvalidInput(fmt::format("smoothing: the derivative of order {} vanishes for "
+                                           "degree {}",
+                                           smooth.order, degree));
+}
 
 AxisPlan plan_axes(const ShapeOptions& options, Index axes) {
     AxisPlan plan;
@@ -146,12 +167,62 @@ AxisPlan plan_axes(const ShapeOptions& options, Index axes) {
     return plan;
 }
 
+AxisPlan planned(const FitOptions& options, SampleKind kind, const std::vector<Index>& shape,
+                 Index dim, Index axes) {
+    AxisPlan plan = plan_axes(options.shape, axes);
+    check_counts(plan, kind, shape);
+    check_net(plan, kind, dim);
+    check_seam(options, plan);
+    check_smoothing(options.smooth, plan);
+    return plan;
+}
+
+KnotPlacement placement_of(const FitOptions& options, SampleKind kind) {
+    if (kind == SampleKind::cloud) return KnotPlacement::uniform;
+    if (options.shape.placement) return *options.shape.placement;
+    return options.method.name == "auto" ? KnotPlacement::both_ends : KnotPlacement::data;
+}
+
+bool knots_meet(Index longest_run, Index samples, Index n, int degree) {
+    return n < samples && (longest_run - 1) * (n - degree) >= samples;
+}
+
+Index placed_count(const FitOptions& options, const AxisPlan& plan, std::size_t axis) {
+    const int degree = plan.degree[axis];
+    const int seam = options.shape.seam_continuity;
+    const int copies = plan.closures[axis] == Closure::closed && seam >= 0 ? degree - 1 - seam : 0;
+    const Index n = plan.control_points[axis] - copies;
+    if (n < degree + 1)
+        throw InvalidInput(
+            fmt::format("axis {}: degree {} with continuity C{} at the seam needs at least {} "
+                        "control points, got {}",
+                        axis, degree, seam, degree + 1 + copies, n + copies));
+    return n;
+}
+
+KnotVector axis_knots(const FitOptions& options, const AxisPlan& plan, std::size_t axis,
+                      KnotPlacement rule, const Extent& extent,
+                      FunctionRef<std::optional<KnotVector>(Index)> among) {
+    const int degree = plan.degree[axis];
+    const Closure closure = plan.closures[axis];
+    if (!options.shape.knots.empty())
+        return on_axis(
+            axis, [&] { return given_knots(options.shape.knots[axis], degree, closure, extent); });
+    const Index n = placed_count(options, plan, axis);
+    const bool closed = closure == Closure::closed;
+    std::optional<KnotVector> knots;
+    if (rule != KnotPlacement::uniform) knots = on_axis(axis, [&] { return among(n); });
+    if (!knots)
+        knots =
+            uniform_knots(degree, n, closed ? 0 : extent.begin, closed ? 1 : extent.end, closure);
+    return with_seam(*knots, static_cast<int>(plan.control_points[axis] - n));
+}
+
 std::vector<KnotVector> fixed_knots(const Problem& problem) {
     if (!problem.sized()) throw InvalidInput("the number of control points is not stated");
     std::vector<KnotVector> result;
     for (std::size_t k = 0; k < problem.axes.count(); ++k)
-        result.push_back(knots_for_boundaries(on_axis(k, [&] { return axis_knots(problem, k); }),
-                                              static_cast<int>(k),
+        result.push_back(knots_for_boundaries(axis_knots(problem, k), static_cast<int>(k),
                                               problem.options.hold.boundaries));
     return result;
 }

@@ -1,12 +1,11 @@
 #include <batten/problem/problem.hpp>
 
-#include <batten/core/counts.hpp>
 #include <batten/parametrize/noise_aware.hpp>
 #include <batten/problem/held.hpp>
 #include <batten/problem/plan.hpp>
+#include <batten/samples/scan.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <utility>
@@ -51,44 +50,6 @@ void check_asked_for(const FitOptions& options) {
         throw InvalidInput("corners: samples are given, but the corners are not the given ones");
 }
 
-/// Along an axis of a sequence or grid there are no more control points than samples.
-void check_counts(const Problem& problem) {
-    if (problem.kind == SampleKind::cloud) return;
-    const std::vector<Index> shape = problem.samples.shape();
-    const std::vector<Index>& n = problem.axes.control_points;
-    for (std::size_t k = 0; k < n.size(); ++k)
-        if (n[k] > shape[k])
-            throw InvalidInput(
-                fmt::format("axis {}: {} control points need at least as many samples, got {}", k,
-                            n[k], shape[k]));
-}
-
-/// Memory must hold the control points, and of a cloud the normal system: half of the numbers for
-/// the control points within degree on each side, for each.
-void check_net(const Problem& problem) {
-    constexpr std::string_view what = "control points";
-    Index system = 1;
-    if (problem.kind == SampleKind::cloud)
-        for (int degree : problem.axes.degree) system *= system == 1 ? degree + 1 : 2 * degree + 1;
-    const std::array numbers{checked_product(problem.axes.control_points, what),
-                             std::max(problem.samples.dim(), system)};
-    check_memory(checked_product(numbers, what), what);
-}
-
-void check_seam(const FitOptions& options, const AxisPlan& axes) {
-    const int order = options.shape.seam_continuity;
-    if (order < 0) return;
-    if (axes.count() != 1)
-        throw InvalidInput("closed: the continuity at a seam is for curves, not for axes of a "
-                           "surface or volume");
-    if (axes.closures[0] == Closure::open)
-        throw InvalidInput(fmt::format("continuity C{} at the seam: the curve is open", order));
-    if (order > axes.degree[0] - 1)
-        throw InvalidInput(fmt::format("closed: continuity C{} at the seam is more than degree {} "
-                                       "has anywhere, C{}",
-                                       order, axes.degree[0], axes.degree[0] - 1));
-}
-
 /// A cloud's parameters that nobody gave: its points seen in a plane.
 Parameters seen(const Samples& samples, const ShapeOptions& shape) {
     if (shape.parametrization)
@@ -102,7 +63,8 @@ Parameters seen(const Samples& samples, const ShapeOptions& shape) {
                                                                : Projection::plane);
 }
 
-/// What the samples are, once the options have had their say.
+} // namespace
+
 SampleKind kind_of(const Samples& samples, const ShapeOptions& shape) {
     if (shape.projection && (shape.parameters || !samples.grid.empty()))
         throw InvalidInput("project: the parameters are given already, by a file or the grid");
@@ -114,6 +76,14 @@ SampleKind kind_of(const Samples& samples, const ShapeOptions& shape) {
     return samples.kind();
 }
 
+Parametrization rule_of(const ShapeOptions& shape, Spacing spacing) {
+    return shape.parametrization      ? *shape.parametrization
+           : spacing == Spacing::even ? Parametrization::uniform
+                                      : Parametrization::chord;
+}
+
+namespace {
+
 Parameters chosen_parameters(const Problem& problem) {
     const Samples& samples = problem.samples;
     const ShapeOptions& shape = problem.options.shape;
@@ -124,9 +94,7 @@ Parameters chosen_parameters(const Problem& problem) {
     const bool noisy = problem.options.smooth.wanted && !shape.parametrization &&
                        problem.kind == SampleKind::sequence && samples.size() > 20;
     if (noisy) return {{noise_aware_parameters(samples.points, problem.axes.closures[0])}, {}};
-    const Parametrization rule = shape.parametrization              ? *shape.parametrization
-                                 : samples.spacing == Spacing::even ? Parametrization::uniform
-                                                                    : Parametrization::chord;
+    const Parametrization rule = rule_of(shape, samples.spacing);
     return parameters_for_boundaries(samples, parametrize(samples, rule, problem.axes.closures),
                                      problem.options.hold.boundaries);
 }
@@ -165,21 +133,6 @@ void complete_size(Problem& problem) {
 
 } // namespace
 
-void check_smoothing(const SmoothOptions& smooth, const AxisPlan& axes) {
-    if (!smooth.wanted) return;
-    if (smooth.order < 2 || smooth.order > 3)
-        throw InvalidInput(
-            fmt::format("smoothing: the derivative's order {} is not 2 or 3", smooth.order));
-    if (!(smooth.lambda >= 0) || !std::isfinite(smooth.lambda))
-        throw InvalidInput(
-            fmt::format("smoothing: the factor {} must be positive and finite", smooth.lambda));
-    for (int degree : axes.degree)
-        if (degree < smooth.order)
-            throw InvalidInput(fmt::format("smoothing: the derivative of order {} vanishes for "
-                                           "degree {}",
-                                           smooth.order, degree));
-}
-
 void Problem::stop_if_cancelled() const {
     if (options.cancelled && options.cancelled()) throw Cancelled("the fit was cancelled");
 }
@@ -189,25 +142,31 @@ Index axis_count(const Samples& samples, const ShapeOptions& shape) {
     return shape.parameters ? shape.parameters->axis_count() : 2;
 }
 
-Problem problem_of(const Samples& samples, const FitOptions& options) {
-    check(samples);
+void check(const FitOptions& options) {
     check_numbers(options);
     check_asked_for(options);
+}
+
+Problem problem_of(const Samples& samples, const FitOptions& options) {
+    const PointScan scan = scanned(samples.points);
+    return problem_of(samples, options, scan);
+}
+
+Problem problem_of(const Samples& samples, const FitOptions& options, const PointScan& scan) {
+    check(samples, scan);
+    check(options);
     Problem problem{.samples = samples,
                     .kind = kind_of(samples, options.shape),
                     .options = options,
-                    .size = diagonal(samples.points)};
+                    .size = diagonal_of(scan.box())};
     problem.stop_if_cancelled();
     ShapeOptions& shape = problem.options.shape;
     if (problem.kind == SampleKind::cloud && !shape.parameters) {
         shape.parameters = seen(samples, shape);
         shape.projection.reset();
     }
-    problem.axes = plan_axes(shape, axis_count(samples, shape));
-    check_counts(problem);
-    check_net(problem);
-    check_seam(options, problem.axes);
-    check_smoothing(options.smooth, problem.axes);
+    problem.axes = planned(problem.options, problem.kind, samples.shape(), samples.dim(),
+                           axis_count(samples, shape));
     for (Index i : options.tolerance.corner_samples) check_sample("corner", i, samples.size());
     check_held(options.hold, problem.samples, problem.kind, problem.axes);
     problem.parameters = chosen_parameters(problem);

@@ -7,6 +7,8 @@
 
 namespace batten {
 
+class PointScan;
+
 /// The options spread over the axes: one entry per axis each.
 struct AxisPlan {
     std::vector<int> degree;
@@ -37,6 +39,16 @@ struct Problem {
     void stop_if_cancelled() const;
 };
 
+/// What the samples are, once the options have had their say. Throws InvalidInput.
+SampleKind kind_of(const Samples& samples, const ShapeOptions& shape);
+
+/// How parameters follow from points where none are given.
+Parametrization rule_of(const ShapeOptions& shape, Spacing spacing);
+
+/// Throws InvalidInput for numbers out of their range and for what is given for an option that is
+/// off.
+void check(const FitOptions& options);
+
 /// Axes of the spline that the options make of the samples; throws InvalidInput where they
 /// contradict each other.
 Index axis_count(const Samples& samples, const ShapeOptions& shape);
@@ -45,9 +57,8 @@ Index axis_count(const Samples& samples, const ShapeOptions& shape);
 /// (a cloud's by projection), with no size and no tolerance stated a tolerance of a thousandth of
 /// the samples' diagonal, with smoothing a size. Throws InvalidInput naming what breaks a rule.
 Problem problem_of(const Samples& samples, const FitOptions& options);
-
-/// Throws InvalidInput for a smoothing whose factor or order makes no sense for the axes' degrees.
-void check_smoothing(const SmoothOptions& smooth, const AxisPlan& axes);
+/// The same where their points are scanned already.
+Problem problem_of(const Samples& samples, const FitOptions& options, const PointScan& scan);
 
 /// One tolerance per sample. Throws InvalidInput unless there is one for each, positive.
 std::vector<double> sample_tolerances(const Samples& samples, const ToleranceOptions& options);

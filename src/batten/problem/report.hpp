@@ -79,13 +79,15 @@ struct FitReport {
     std::vector<std::pair<std::string, Index>>
         stages;                 ///< control points after each stage of a fit to a tolerance
     Index searched_samples = 0; ///< that a fit to a tolerance went by; 0: by all
-    Index passes = 0;           ///< over all samples, to check what was found by some; 0: none
+    Index full_checks = 0;      ///< of what was found by some of the samples, by all of them
     double smoothing = 0;       ///< lambda, where smoothness counts; else 0
     double freedom = 0;         ///< degrees of freedom that cross-validation left; else 0
     std::vector<Index>
         set_aside;        ///< samples found to be outliers: not fitted, not in the deviation
     double data_size = 0; ///< diagonal of the samples' box, the greatest double at most
     std::vector<std::pair<std::string, double>> seconds; ///< per stage, in order
+    Index passes = 0;     ///< over a source's samples; 0 where they were in memory at once
+    Index bytes_read = 0; ///< of files by these passes
     std::vector<HistoryEntry> history;
     std::vector<Frame> frames; ///< with FitOptions::most_frames, evenly over the iterations
     std::vector<Goal> goals;   ///< all that was stated, met or not

@@ -40,25 +40,29 @@ std::vector<Request> Requests::list() const {
 }
 
 Requests requests_of(const Problem& problem) {
-    const FitOptions& options = problem.options;
+    return requests_of(problem.options, problem.axes, problem.kind,
+                       !problem.samples.weights.empty());
+}
+
+Requests requests_of(const FitOptions& options, const AxisPlan& axes, SampleKind kind,
+                     bool weighted) {
     const ShapeOptions& shape = options.shape;
     const StopRule usual;
     Requests result;
     const auto ask = [&](Request request, bool asked) {
         if (asked) result = result | Requests{request};
     };
-    ask(Request::size, !problem.axes.control_points.empty());
+    ask(Request::size, !axes.control_points.empty());
     ask(Request::knots, !shape.knots.empty());
     // of a cloud knots are even anyway
-    const bool even =
-        problem.kind == SampleKind::cloud && shape.placement == KnotPlacement::uniform;
+    const bool even = kind == SampleKind::cloud && shape.placement == KnotPlacement::uniform;
     ask(Request::placement, shape.placement.has_value() && !even);
-    ask(Request::parameters, problem.kind != SampleKind::cloud && shape.parameters.has_value());
-    ask(Request::weights, !problem.samples.weights.empty());
+    ask(Request::parameters, kind != SampleKind::cloud && shape.parameters.has_value());
+    ask(Request::weights, weighted);
     ask(Request::tolerance, options.tolerance.stated());
     ask(Request::limit, options.tolerance.max_control_points > 0);
     ask(Request::corners, options.tolerance.corners != Corners::automatic);
-    ask(Request::closed, std::ranges::count(problem.axes.closures, Closure::closed) > 0);
+    ask(Request::closed, std::ranges::count(axes.closures, Closure::closed) > 0);
     ask(Request::seam, shape.seam_continuity >= 0);
     ask(Request::samples, !options.hold.interpolate.empty());
     ask(Request::tangents, !options.hold.tangents.empty());

@@ -62,4 +62,8 @@ class Requests {
 /// What the problem asks for.
 Requests requests_of(const Problem& problem);
 
+/// What options ask for of samples of that kind, weighted or not, over these axes.
+Requests requests_of(const FitOptions& options, const AxisPlan& axes, SampleKind kind,
+                     bool weighted);
+
 } // namespace batten

@@ -9,6 +9,7 @@ namespace batten {
 struct FitResult {
     Spline spline;
     FitReport report;
+    /// Empty, as are the deviations, without FitOptions::keep_per_sample.
     Parameters parameters;
     /// How far the spline is from each sample, those set aside too: of report.deviation.kind.
     std::vector<double> deviations{};

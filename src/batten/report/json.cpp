@@ -90,7 +90,7 @@ void add_tolerance(Json& json, const FitReport& r) {
     for (const auto& [stage, count] : r.stages) json["stages"][stage] = count;
     if (r.searched_samples > 0) {
         json["searched_samples"] = r.searched_samples;
-        json["passes"] = r.passes;
+        json["full_checks"] = r.full_checks;
     }
 }
 
@@ -124,6 +124,8 @@ std::string FitReport::to_json() const {
     json["seconds"] = Json::object();
     for (const auto& [stage, time] : seconds) json["seconds"][stage] = time;
     json["seconds"]["total"] = total_seconds();
+    if (passes > 0) json["passes"] = passes;
+    if (bytes_read > 0) json["bytes_read"] = bytes_read;
     if (!notes.empty()) json["notes"] = notes;
     if (!history.empty()) json["history"] = history_json(history);
     return json.dump(2) + "\n";

@@ -70,7 +70,7 @@ Lines closeness(const FitReport& r) {
     if (!counts.empty()) lines.emplace_back("control", counts);
     if (r.searched_samples > 0)
         lines.emplace_back("search", fmt::format("by {} samples, checked by all {} times",
-                                                 r.searched_samples, r.passes));
+                                                 r.searched_samples, r.full_checks));
     return lines;
 }
 
@@ -182,6 +182,11 @@ std::vector<std::pair<std::string, std::string>> FitReport::lines() const {
     for (const auto& [stage, time] : seconds)
         times += fmt::format("{}{} {:.2g}", times.empty() ? "" : ", ", stage, time);
     result.emplace_back("seconds", fmt::format("{:.3g} ({})", total_seconds(), times));
+    if (bytes_read > 0) {
+        const std::string read = fmt::format("{:.4g} MB", static_cast<double>(bytes_read) / 1e6);
+        result.emplace_back("read",
+                            passes > 0 ? fmt::format("{} in {} passes", read, passes) : read);
+    }
     for (const std::string& note : notes) result.emplace_back("note", note);
     return result;
 }

@@ -60,6 +60,9 @@ struct Samples {
 /// match, a coordinate is not finite (the sample is named) or a weight is not positive and finite.
 void check(const Samples& samples);
 
+/// The part of it that no coordinate and no weight decides.
+void check_shape(const Samples& samples);
+
 /// Throws InvalidInput, `what` first, unless i is one of so many samples.
 void check_sample(std::string_view what, Index i, Index samples);
 

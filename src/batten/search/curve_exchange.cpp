@@ -24,8 +24,8 @@ constexpr Index samples_per_control = 32; // so many tell what a control point d
 /// Searches by some samples, at one number of stretches.
 class Exchange {
   public:
-    Exchange(CurveTask& all, Index most, const CurveSearch& search, Index& passes)
-        : all_(all), most_(most), search_(search), passes_(passes) {}
+    Exchange(CurveTask& all, Index most, const CurveSearch& search, Index& checks)
+        : all_(all), most_(most), search_(search), checks_(checks) {}
 
     /// A curve that holds for all samples; or, where only the stated number of control points keeps
     /// it from them, the one that the search left. Nothing where these samples do not suffice.
@@ -94,7 +94,7 @@ class Exchange {
         constexpr int most_exchanges = 8;
         for (int k = 0; k < most_exchanges; ++k) {
             CurveTrial all = some->carried(trial);
-            ++passes_;
+            ++checks_;
             if (all.worst <= 1) return refitted(std::move(all));
             std::vector<Index> kept = some->kept();
             if (!add_offenders(all, kept, offenders_)) return {};
@@ -119,7 +119,7 @@ class Exchange {
     std::optional<CurveTrial> refitted(CurveTrial within) {
         within.weights = first_weights(all_);
         CurveTrial again = within;
-        ++passes_;
+        ++checks_;
         if (settle(all_, again, 1, KnotShift::none) && !is_wild(all_, again)) return again;
         if (is_wild(all_, within)) return {};
         return within;
@@ -135,14 +135,14 @@ class Exchange {
         found.trial = left.some->carried(found.trial);
         found.closest.see(all_, found.trial);
         if (closest.trial()) found.closest.see(all_, left.some->carried(*closest.trial()));
-        passes_ += 2;
+        checks_ += 2;
         return std::move(found);
     }
 
     CurveTask& all_;
     Index most_;
     const CurveSearch& search_;
-    Index& passes_;
+    Index& checks_;
     std::vector<Index> offenders_; ///< of any candidate
 };
 
@@ -150,11 +150,11 @@ class Exchange {
 
 CurveWithin by_exchange(CurveTask& task, Index most, const CurveSearch& search) {
     const Index m = task.samples.size();
-    Index passes = 0;
+    Index checks = 0;
     for (Index stretches = first_stretches; m > few_enough && m / least_part > stretches;
          stretches *= finer) {
-        if (auto found = Exchange(task, most, search, passes).by(stretches)) {
-            found->passes = passes;
+        if (auto found = Exchange(task, most, search, checks).by(stretches)) {
+            found->full_checks = checks;
             return std::move(*found);
         }
     }

@@ -14,8 +14,8 @@ struct CurveWithin {
     bool met = false;
     ClosestSeen closest; ///< on the way there
     std::vector<std::pair<std::string, Index>> stages;
-    Index searched = 0; ///< samples that the search went by where it was not all
-    Index passes = 0;   ///< candidates that were then checked by all
+    Index searched = 0;    ///< samples that the search went by where it was not all
+    Index full_checks = 0; ///< candidates that were then checked by all
 };
 
 /// Free control points of a fit.

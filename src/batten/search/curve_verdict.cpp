@@ -77,7 +77,7 @@ FitReport judged(const CurveTask& task, const CurveOutcome& outcome, Index allow
     FitReport report = inflections_of(task, found.trial);
     report.stages = found.stages;
     report.searched_samples = found.searched;
-    report.passes = found.passes;
+    report.full_checks = found.full_checks;
     report.termination = found.met ? Termination::tolerance_met : Termination::tolerance_not_met;
     report.noise_level = outcome.noise;
     const BetweenSamples between = check_reached(task, found.trial);

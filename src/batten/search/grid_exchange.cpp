@@ -17,21 +17,21 @@ constexpr Index least_part = 3;        // some of the samples: at most a third
 
 /// The spline within tolerance of all samples, or, fitted to all of them, on its knots.
 std::optional<GridFit> within_all(const GridTask& task, const Spline& spline, GridFit& all,
-                                  Index& passes) {
+                                  Index& checks) {
     try {
-        ++passes;
+        ++checks;
         GridFit refitted = least_squares(task, spline.axes(), task.samples);
         if (refitted.worst <= 1) return refitted;
     } catch (const SolverError&) { // then the spline itself
     }
-    ++passes;
+    ++checks;
     all = measured(task, spline);
     if (all.worst <= 1) return all;
     return {};
 }
 
 /// The search by about so many samples; nothing where these do not suffice.
-std::optional<GridWithin> by_some(const GridTask& task, Index wanted, Index& passes) {
+std::optional<GridWithin> by_some(const GridTask& task, Index wanted, Index& checks) {
     constexpr int most_searches = 6;
     ThinnedGrid some(task, wanted);
     for (int k = 0; k < most_searches && some.size() <= task.samples.size() / least_part; ++k) {
@@ -39,7 +39,7 @@ std::optional<GridWithin> by_some(const GridTask& task, Index wanted, Index& pas
         if (found.spline.axis_count() == 0 || (!found.met && !some.tells_all())) return {};
         found.searched = some.size();
         GridFit all;
-        std::optional<GridFit> fit = within_all(task, found.spline, all, passes);
+        std::optional<GridFit> fit = within_all(task, found.spline, all, checks);
         if (fit || !found.met) {
             if (!fit) fit = std::move(all);
             found.met = fit->worst <= 1;
@@ -56,11 +56,11 @@ std::optional<GridWithin> by_some(const GridTask& task, Index wanted, Index& pas
 
 GridWithin sizes_by_exchange(const GridTask& task) {
     const Index m = task.samples.size();
-    Index passes = 0;
+    Index checks = 0;
     if (m > few_enough && !task.hold.equalities())
         for (Index wanted = first_samples; wanted <= m / least_part; wanted *= finer)
-            if (auto found = by_some(task, wanted, passes)) {
-                found->passes = passes;
+            if (auto found = by_some(task, wanted, checks)) {
+                found->full_checks = checks;
                 return std::move(*found);
             }
     return fewest_sizes(task);

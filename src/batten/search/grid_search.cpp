@@ -62,7 +62,7 @@ FitReport judged(const GridTask& task, const GridWithin& found, Index allowed, d
     const bool met = found.met && between.excess <= wild_part;
     report.stages = found.stages;
     report.searched_samples = found.searched;
-    report.passes = found.passes;
+    report.full_checks = found.full_checks;
     report.tolerance = *std::ranges::min_element(task.tolerance);
     report.termination = met ? Termination::tolerance_met : Termination::tolerance_not_met;
     report.between_samples = between.excess;

@@ -19,7 +19,7 @@ struct GridWithin {
     double worst = 0; ///< largest distance of a sample over its tolerance, at its own parameters
     std::vector<std::pair<std::string, Index>> stages;
     Index searched = 0;       ///< samples that the search went by where it was not all
-    Index passes = 0;         ///< candidates that were then checked by all
+    Index full_checks = 0;    ///< candidates that were then checked by all
     BetweenSamples between{}; ///< as check_reached finds it, where it was asked
 };
 

@@ -83,21 +83,28 @@ PointSet constrained(PointSet control, const Factorization& normal,
 }
 
 /// Factors of the normal equations where these keep half of a number's digits, or ten where
-/// smoothing or weights make them lose some, else of the rows.
+/// smoothing or weights make them lose some; null where the rows are needed.
+std::unique_ptr<Factorization> factors_that_keep(const NormalSystem& system, bool plain) {
+    const double most = plain ? 1 / std::sqrt(std::numeric_limits<double>::epsilon()) : 1e6;
+    const bool has_rows = !system.factors().empty();
+    try {
+        auto normal = factorize(system);
+        if (!has_rows || inverse_norm(system, *normal) <= most) return normal;
+    } catch (const SolverError&) {
+        if (!has_rows) throw;
+    }
+    return nullptr;
+}
+
+/// These, or else factors of the rows.
 struct Solver {
     std::unique_ptr<Factorization> normal;
     std::unique_ptr<RowFactorization> rows;
 
     Solver(const NormalSystem& system, const SampleRows& of) {
         const bool plain = of.lambda == 0 && of.samples.weights.empty();
-        const double most = plain ? 1 / std::sqrt(std::numeric_limits<double>::epsilon()) : 1e6;
-        const bool has_rows = !system.factors().empty();
-        try {
-            normal = factorize(system);
-            if (!has_rows || inverse_norm(system, *normal) <= most) return;
-        } catch (const SolverError&) {
-            if (!has_rows) throw;
-        }
+        normal = factors_that_keep(system, plain);
+        if (normal) return;
         rows = std::make_unique<RowFactorization>(system.axes(), of, system.centre());
         if (!plain) return;
         for (const BandedQr& axis : rows->axes()) axis.check();
@@ -126,6 +133,12 @@ PointSet solve_direct(const NormalSystem& system, const SampleRows& rows,
     const Constraints independent = given.empty() ? given : given.independent(system.size());
     const Solver solver(system, rows);
     return constrained(solver.solution(system), solver.factors(), independent);
+}
+
+std::optional<PointSet> solve_direct_without_rows(const NormalSystem& system, bool weighted) {
+    const auto normal = factors_that_keep(system, !weighted);
+    if (!normal) return std::nullopt;
+    return normal->solve(system.rhs());
 }
 
 double freedom_held(const NormalSystem& samples, const NormalSystem& smoothed,

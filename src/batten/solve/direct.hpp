@@ -4,6 +4,8 @@
 #include <batten/system/constraints.hpp>
 #include <batten/system/normal_system.hpp>
 
+#include <optional>
+
 namespace batten {
 
 /// Least-squares control points (N x dim) relative to the system's centre.
@@ -20,6 +22,10 @@ PointSet solve_direct(const NormalSystem& system, const Constraints& constraints
 /// be solved to half of a number's digits, with smoothing or weights to ten.
 PointSet solve_direct(const NormalSystem& system, const SampleRows& rows,
                       const Constraints& constraints);
+
+/// The same of samples of weight one or others, without constraints and smoothing; nothing where
+/// it would take the rows.
+std::optional<PointSet> solve_direct_without_rows(const NormalSystem& system, bool weighted);
 
 /// By how much constraints reduce the trace of the matrix that makes fitted values of the samples,
 /// for their system without roughness and with it: by trace (C S^{-1} C^T)^{-1} C S^{-1} G S^{-1}

@@ -1,5 +1,6 @@
 #include <batten/system/factored_system.hpp>
 
+#include <batten/samples/passes.hpp>
 #include <batten/system/chebyshev_maps.hpp>
 #include <batten/system/moments.hpp>
 
@@ -11,18 +12,9 @@ namespace batten {
 
 namespace {
 
-constexpr Index chunk_samples = 1 << 14;
 constexpr Index wave_chunks = 16; // chunks under way at once: bounds the memory of their results
 
 constexpr Index few_samples = 4; // per B-spline: below, a span's moments cost more than they save
-
-/// What the samples of one chunk add to the spans that they touch.
-struct ChunkSums {
-    std::vector<Index> spans;
-    std::vector<double> grams; ///< per span the pairs (i, j), i <= j
-    std::vector<double> rhs;   ///< per span (p + 1) x dim
-    double energy = 0;
-};
 
 /// The samples of a chunk, span by span.
 class ChunkPass {
@@ -30,8 +22,10 @@ class ChunkPass {
     ChunkPass(const KnotVector& knots, const std::vector<double>& centre)
         : knots_(knots), centre_(centre), dim_(static_cast<Index>(centre.size())) {}
 
-    ChunkSums operator()(const double* t, const double* q, const double* w, Index count) const {
-        ChunkSums sums;
+    void operator()(const double* t, const double* q, const double* w, Index count,
+                    SpanSums& sums) const {
+        for (std::vector<double>* of : {&sums.grams, &sums.rhs, &sums.telling}) of->clear();
+        sums.spans.clear();
         Lanes energy;
         const int p = knots_.degree();
         Room room{std::vector<Lanes>(static_cast<std::size_t>(2 * p + 1)),
@@ -53,10 +47,11 @@ class ChunkPass {
                 add_few(span, shift, samples, energy, sums);
             else
                 add_span(span, shift, samples, energy, room, sums);
+            add_telling(t + i, t + end, sums.telling);
             i = end;
         }
         sums.energy = energy.sum();
-        return sums;
+        sums.samples = count;
     }
 
   private:
@@ -66,9 +61,22 @@ class ChunkPass {
         std::vector<Lanes> values;
     };
 
+    /// Of a span's parameters those that tell what they determine: one at the knot and as many
+    /// others as there are B-splines, and the last.
+    void add_telling(const double* begin, const double* end, std::vector<double>& telling) const {
+        const double last = *(end - 1);
+        for (int k = 0; k <= knots_.degree() + 1 && begin != end; ++k) {
+            telling.push_back(*begin);
+            ++begin;
+            if (begin != end && *begin == telling.back())
+                begin = std::upper_bound(begin, end, telling.back());
+        }
+        if (telling.back() != last) telling.push_back(last);
+    }
+
     /// Of a span with few samples: sample by sample.
     void add_few(Index span, double shift, const SpanSamples& samples, Lanes& energy,
-                 ChunkSums& sums) const {
+                 SpanSums& sums) const {
         const int p = knots_.degree();
         sums.spans.push_back(span);
         const std::size_t gram = sums.grams.size();
@@ -95,9 +103,9 @@ class ChunkPass {
     }
 
     void add_span(Index span, double shift, const SpanSamples& samples, Lanes& energy, Room& room,
-                  ChunkSums& sums) const {
+                  SpanSums& sums) const {
         const int p = knots_.degree();
-        const ChebyshevMaps maps(knots_, span);
+        const ChebyshevPairs maps(knots_, span);
         std::vector<Lanes>& moments = room.moments;
         std::vector<Lanes>& values = room.values;
         std::fill(moments.begin(), moments.end(), Lanes{});
@@ -134,37 +142,42 @@ BandedSystem::BandedSystem(const KnotVector& knots, std::vector<double> centre)
 void BandedSystem::add(std::span<const double> parameters, const Points& points,
                        std::span<const double> weights) {
     assert(static_cast<Index>(parameters.size()) == points.size());
-    const KnotVector& knots = axes_[0];
-    const int p = knots.degree();
-    const Index n = knots.free_count();
-    const ChunkPass pass(knots, centre_);
-    BandedMatrix& gram = grams_[0];
     const Index chunks = block_count(points.size(), chunk_samples);
-    std::vector<ChunkSums> wave;
+    std::vector<SpanSums> wave(static_cast<std::size_t>(std::min(chunks, wave_chunks)));
     for (Index first = 0; first < chunks; first += wave_chunks) {
         const Index count = std::min(wave_chunks, chunks - first);
-        wave.assign(static_cast<std::size_t>(count), {});
         for_each_chunk(count, [&](Index k) {
             const Index begin = (first + k) * chunk_samples;
             const Index size = std::min(chunk_samples, points.size() - begin);
-            wave[static_cast<std::size_t>(k)] =
-                pass(parameters.data() + begin, points.data() + begin * dim(),
-                     weights.empty() ? nullptr : weights.data() + begin, size);
+            sum(parameters.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(size)),
+                points.data() + begin * dim(), weights.empty() ? nullptr : weights.data() + begin,
+                wave[static_cast<std::size_t>(k)]);
         });
-        for (const ChunkSums& sums : wave) { // in order: the same bits for any number of threads
-            std::size_t pair = 0;
-            std::size_t value = 0;
-            for (Index span : sums.spans) {
-                for (int i = 0; i <= p; ++i) {
-                    const Index row = (span - p + i) % n;
-                    for (int j = i; j <= p; ++j) gram.at(row, j - i) += sums.grams[pair++];
-                    for (Index d = 0; d < dim(); ++d) rhs_(row, d) += sums.rhs[value++];
-                }
-            }
-            data_energy_ += sums.energy;
+        for (Index k = 0; k < count; ++k) // in order: the same bits for any number of threads
+            add(wave[static_cast<std::size_t>(k)]);
+    }
+}
+
+void BandedSystem::sum(std::span<const double> parameters, const double* points,
+                       const double* weights, SpanSums& sums) const {
+    ChunkPass(axes_[0], centre_)(parameters.data(), points, weights,
+                                 static_cast<Index>(parameters.size()), sums);
+}
+
+void BandedSystem::add(const SpanSums& sums) {
+    const int p = axes_[0].degree();
+    const Index n = axes_[0].free_count();
+    std::size_t pair = 0;
+    std::size_t value = 0;
+    for (Index span : sums.spans) {
+        for (int i = 0; i <= p; ++i) {
+            const Index row = (span - p + i) % n;
+            for (int j = i; j <= p; ++j) grams_[0].at(row, j - i) += sums.grams[pair++];
+            for (Index d = 0; d < dim(); ++d) rhs_(row, d) += sums.rhs[value++];
         }
     }
-    sample_count_ += points.size();
+    data_energy_ += sums.energy;
+    sample_count_ += sums.samples;
 }
 
 } // namespace batten

@@ -43,7 +43,6 @@ ChebyshevMaps::ChebyshevMaps(const KnotVector& knots, Index span)
       middle_((knots[span] + knots[span + 1]) / 2),
       scale_(2 / (knots[span + 1] - knots[span])) {
     std::fill_n(values_.begin(), (p_ + 1) * (p_ + 1), 0.0);
-    std::fill_n(pairs_.begin(), (p_ + 1) * (p_ + 2) / 2 * (2 * p_ + 1), 0.0);
     const int n = p_ + 1;
     const Transform& t = transform(n);
     for (int j = 0; j < n; ++j) {
@@ -54,6 +53,11 @@ ChebyshevMaps::ChebyshevMaps(const KnotVector& knots, Index span)
                 values_[static_cast<std::size_t>(i * n + k)] +=
                     t.matrix[static_cast<std::size_t>(k)][node] * b[static_cast<std::size_t>(i)];
     }
+}
+
+ChebyshevPairs::ChebyshevPairs(const KnotVector& knots, Index span) : ChebyshevMaps(knots, span) {
+    std::fill_n(pairs_.begin(), (p_ + 1) * (p_ + 2) / 2 * (2 * p_ + 1), 0.0);
+    const int n = p_ + 1;
     // T_a T_b = (T_{a+b} + T_{|a-b|}) / 2
     for (int i = 0; i < n; ++i)
         for (int j = i; j < n; ++j) {

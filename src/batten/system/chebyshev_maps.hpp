@@ -21,6 +21,26 @@ class ChebyshevMaps {
   public:
     ChebyshevMaps(const KnotVector& knots, Index span);
 
+    /// Coefficients of B_i in T_0 ... T_p.
+    const double* coefficients(int i) const { return values_.data() + i * (p_ + 1); }
+    double middle() const { return middle_; }
+    /// s = (t - middle) * scale.
+    double scale() const { return scale_; }
+
+  protected:
+    int p_;
+
+  private:
+    double middle_;
+    double scale_;
+    std::array<double, (max_degree + 1) * (max_degree + 1)> values_;
+};
+
+/// The same with the products of any two of them.
+class ChebyshevPairs : public ChebyshevMaps {
+  public:
+    ChebyshevPairs(const KnotVector& knots, Index span);
+
     /// Value of pair (i, j), 0 <= i <= j <= p, from the moments sum T_0 ... sum T_2p (stride
     /// apart): sum of B_i B_j.
     double pair(int i, int j, const double* moments, Index stride = 1) const {
@@ -29,21 +49,12 @@ class ChebyshevMaps {
         for (int k = 0; k <= 2 * p_; ++k) sum += row[k] * moments[k * stride];
         return sum;
     }
-    /// Coefficients of B_i in T_0 ... T_p.
-    const double* coefficients(int i) const { return values_.data() + i * (p_ + 1); }
     /// Coefficients of B_i B_j, i <= j, in T_0 ... T_2p.
     const double* pair_coefficients(int i, int j) const {
         return pairs_.data() + pair_row(i, j, p_) * (2 * p_ + 1);
     }
-    double middle() const { return middle_; }
-    /// s = (t - middle) * scale.
-    double scale() const { return scale_; }
 
   private:
-    int p_;
-    double middle_;
-    double scale_;
-    std::array<double, (max_degree + 1) * (max_degree + 1)> values_;
     std::array<double, (max_degree + 1) * (max_degree + 2) / 2 * (2 * max_degree + 1)> pairs_;
 };
 

@@ -28,6 +28,18 @@ class FactoredSystem : public NormalSystem {
     std::vector<BandedMatrix> grams_; // one per axis
 };
 
+/// What a chunk of samples adds to the normal system of a sequence, span by span.
+struct SpanSums {
+    std::vector<Index> spans;
+    std::vector<double> grams; ///< per span the pairs (i, j), i <= j
+    std::vector<double> rhs;   ///< per span (p + 1) x dim
+    double energy = 0;
+    /// Ascending parameters, all that differ or enough of each span: they determine as many control
+    /// points as all do (undetermined).
+    std::vector<double> telling;
+    Index samples = 0;
+};
+
 /// The normal system of a sequence: one banded matrix, built in one pass from the moments of each
 /// knot span.
 class BandedSystem : public FactoredSystem {
@@ -39,6 +51,12 @@ class BandedSystem : public FactoredSystem {
     /// InvalidInput when a parameter is outside an open domain.
     void add(std::span<const double> parameters, const Points& points,
              std::span<const double> weights);
+    /// The same in two steps, so that chunks can be summed on several threads: samples (count x
+    /// dim) at so many ascending parameters, `weights` null where all are one; sums to be added in
+    /// the samples' order.
+    void sum(std::span<const double> parameters, const double* points, const double* weights,
+             SpanSums& sums) const;
+    void add(const SpanSums& sums);
 
     std::unique_ptr<NormalSystem> clone() const override {
         return std::make_unique<BandedSystem>(*this);

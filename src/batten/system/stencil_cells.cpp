@@ -74,8 +74,8 @@ struct SortedSamples {
 };
 
 SortedSamples sort_by_cell(const std::vector<KnotVector>& axes, const SpanTable& u,
-                           const SpanTable& v, const std::vector<ChebyshevMaps>& maps_u,
-                           const std::vector<ChebyshevMaps>& maps_v,
+                           const SpanTable& v, const std::vector<ChebyshevPairs>& maps_u,
+                           const std::vector<ChebyshevPairs>& maps_v,
                            const std::vector<double>& centre, const Points& points,
                            const Points& parameters, std::span<const double> weights) {
     const Index m = points.size();
@@ -103,8 +103,8 @@ SortedSamples sort_by_cell(const std::vector<KnotVector>& axes, const SpanTable&
     for (Index i = 0; i < m; ++i) {
         const std::int32_t c = cell[static_cast<std::size_t>(i)];
         const Index at = next[static_cast<std::size_t>(c)]++;
-        const ChebyshevMaps& a = maps_u[static_cast<std::size_t>(c / columns)];
-        const ChebyshevMaps& b = maps_v[static_cast<std::size_t>(c % columns)];
+        const ChebyshevPairs& a = maps_u[static_cast<std::size_t>(c / columns)];
+        const ChebyshevPairs& b = maps_v[static_cast<std::size_t>(c % columns)];
         sorted.plane(0)[at] = (axes[0].wrapped(parameters(i, 0)) - a.middle()) * a.scale();
         sorted.plane(1)[at] = (axes[1].wrapped(parameters(i, 1)) - b.middle()) * b.scale();
         sorted.plane(2)[at] = weights.empty() ? 1.0 : weights[static_cast<std::size_t>(i)];
@@ -114,15 +114,15 @@ SortedSamples sort_by_cell(const std::vector<KnotVector>& axes, const SpanTable&
     return sorted;
 }
 
-std::vector<ChebyshevMaps> maps_of(const KnotVector& knots, const SpanTable& table) {
-    std::vector<ChebyshevMaps> maps;
+std::vector<ChebyshevPairs> maps_of(const KnotVector& knots, const SpanTable& table) {
+    std::vector<ChebyshevPairs> maps;
     for (Index span : table.spans()) maps.emplace_back(knots, span);
     return maps;
 }
 
 /// One cell's moments turned into what its B-splines need.
 template <class Sums>
-void convert(const ChebyshevMaps& a, const ChebyshevMaps& b, int p, int q, Index dim,
+void convert(const ChebyshevPairs& a, const ChebyshevPairs& b, int p, int q, Index dim,
              const std::vector<Lanes>& moment_lanes, const std::vector<Lanes>& value_lanes,
              Sums& sums) {
     const int rows = 2 * p + 1;
@@ -172,8 +172,8 @@ void StencilSystem::add_cells(const Points& points, const Points& parameters,
     const int q = axes_[1].degree();
     const SpanTable u(axes_[0]);
     const SpanTable v(axes_[1]);
-    const std::vector<ChebyshevMaps> maps_u = maps_of(axes_[0], u);
-    const std::vector<ChebyshevMaps> maps_v = maps_of(axes_[1], v);
+    const std::vector<ChebyshevPairs> maps_u = maps_of(axes_[0], u);
+    const std::vector<ChebyshevPairs> maps_v = maps_of(axes_[1], v);
     const SortedSamples sorted =
         sort_by_cell(axes_, u, v, maps_u, maps_v, centre_, points, parameters, weights);
     const auto columns = static_cast<Index>(v.spans().size());

@@ -1,0 +1,27 @@
+#include <batten/samples/sample_scan.hpp>
+
+#include <cmath>
+
+namespace batten {
+
+void SampleScan::add(const SampleChunk& chunk, const PointScan& points) {
+    if (const Index bad = points.first_bad(); bad >= 0)
+        throw not_finite(chunk.first + bad, Points(chunk.points, chunk.count, box_.dim())[bad]);
+    box_.add(points);
+    if (chunk.weights != nullptr)
+        weights_.add({chunk.weights, static_cast<std::size_t>(chunk.count)});
+}
+
+void SampleScan::check(Index samples) const {
+    if (samples == 0) throw InvalidInput("samples: there are none");
+    if (weights_.largest() > 0) weights_.check_range();
+}
+
+bool SampleScan::usual_numbers() const {
+    constexpr int far = 200;
+    const bool usual_weights =
+        !(weights_.largest() > 0) || std::abs(std::ilogb(weights_.largest())) <= far;
+    return usual_weights && usual_unit(box_.box()) == 1;
+}
+
+} // namespace batten
