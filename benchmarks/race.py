@@ -87,7 +87,7 @@ def timed(work):
     return result, 1e3 * (time.perf_counter() - start)
 
 
-def race(name, server, peer, peer_rms, rounds, bounds, rows, peer_once=None):
+def race(name, server, peer, peer_rms, rounds, bounds, rows, samples, peer_once=None, chord=0):
     answer, first_time = (None, peer_once[1]) if peer_once else timed(peer)
     if peer_once: answer = peer_once[0]
     theirs_rms = peer_rms(answer)
@@ -95,19 +95,51 @@ def race(name, server, peer, peer_rms, rounds, bounds, rows, peer_once=None):
     ours_rms = float(ours_rms)
     if abs(ours_rms / theirs_rms - 1) > 1e-9:
         raise SystemExit(f"{name}: residuals differ: ours {ours_rms}, SciPy {theirs_rms}")
-    times = {"read": [], "one": [], "two": [], "scipy": []}
+    _, fit_rms, _ = server.ask("fit 1")
+    if abs(float(fit_rms) / theirs_rms - 1) > 1e-9:
+        raise SystemExit(f"{name}: residuals differ: fit() {fit_rms}, SciPy {theirs_rms}")
+    times = {"read": [], "one": [], "two": [], "scipy": [], "fit": [], "fit_two": [], **({"chord": []} if chord else {})}
     for _ in range(rounds):
+        times["fit"].append(float(server.ask("fit 1")[0]))
+        times["fit_two"].append(float(server.ask("fit 2")[0]))
+        if chord: times["chord"].append(float(server.ask(f"chord 1 {chord}")[0]))
         times["read"].append(float(server.ask("read")[0]))
         times["one"].append(float(server.ask(1)[0]))
         times["two"].append(float(server.ask(2)[0]))
         times["scipy"].append(first_time if peer_once else timed(peer)[1])
     median = {k: statistics.median(v) for k, v in times.items()}
-    rows.append({"work": name, "how": how.strip(), "rms": ours_rms, "scipy_rms": theirs_rms, **{f"{k}_ms": v for k, v in median.items()},
+    rows.append({"work": name, "samples": samples, "how": how.strip(), "rms": ours_rms, "scipy_rms": theirs_rms, **{f"{k}_ms": v for k, v in median.items()},
                  "ratio_one": median["scipy"] / median["one"], "ratio_two": median["scipy"] / median["two"],
                  "speedup_two": median["one"] / median["two"], "must": bounds[0], "aim": bounds[1]})
     r = rows[-1]
     print(f"{name:<32}{median['scipy']:>11.2f}{median['one']:>10.2f}{median['two']:>10.2f}{median['read']:>9.2f}"
           f"{r['ratio_one']:>9.1f}{r['ratio_two']:>8.1f}{bounds[0]:>6}{bounds[1]:>6}   {how.strip()}", flush=True)
+
+
+def whole_calls(rows):
+    """fit() from samples to report, deviation included, beside its own kernel and SciPy's solution alone."""
+    print(f"\n{'fit(), the whole call':<32}{'1 thread':>10}{'2':>10}{'ns/sample':>11}{'x kernel':>10}{'x SciPy':>9}{'x read':>8}")
+    for r in rows:
+        for word in ("fit", "chord"):
+            if f"{word}_ms" not in r: continue
+            one = r[f"{word}_ms"]
+            two = f"{r['fit_two_ms']:>10.2f}" if word == "fit" else " " * 10
+            print(f"{r['work'] + (', chord' if word == 'chord' else ''):<32}{one:>10.2f}{two}{1e6 * one / r['samples']:>11.1f}"
+                  f"{one / r['one_ms']:>10.2f}{r['scipy_ms'] / one:>9.1f}{one / r['read_ms']:>8.1f}")
+
+
+def small_call():
+    """205 samples to 20 control points, microseconds a call."""
+    t = np.linspace(0, 1, 205)
+    q = noisy(np.stack([np.cos(5 * t), np.sin(7 * t)], axis=1))
+    with tempfile.TemporaryDirectory() as folder:
+        for name, values in (("q", q), ("t0", t), ("k0", uniform_knots(20))): np.save(f"{folder}/{name}.npy", values)
+        server = Server(folder, 1, "ordered")
+        calls = statistics.median(1e3 * float(server.ask("chord 1 20 2000")[0]) for _ in range(5))
+        server.close()
+    peer = statistics.median(timed(lambda: make_lsq_spline(t, q, uniform_knots(20), 3))[1] for _ in range(200))
+    print(f"{'205 samples, 20 control points':<32}{calls:>10.1f} microseconds a call, SciPy's solution alone {1e3 * peer:.1f}")
+    return {"work": "205 samples, 20 control points", "fit_us": calls, "scipy_us": 1e3 * peer}
 
 
 def main():
@@ -125,7 +157,8 @@ def main():
                 np.save(f"{folder}/t{axis}.npy", t[axis])
                 np.save(f"{folder}/k{axis}.npy", k[axis])
             server = Server(folder, len(t), "ordered")
-            race(name, server, lambda: lsq_axes(q, t, k), lambda c: rms_axes(c, q, t, k), options.rounds, bounds, rows)
+            race(name, server, lambda: lsq_axes(q, t, k), lambda c: rms_axes(c, q, t, k), options.rounds, bounds, rows, q[..., 0].size,
+                 chord=len(k[0]) - 4 if len(t) == 1 else 0)
             server.close()
     for name, q, uv, k, bounds in clouds(options.quick):
         with tempfile.TemporaryDirectory() as folder:
@@ -139,8 +172,10 @@ def main():
             def rms(s):
                 return float(np.sqrt(((s.ev(uv[:, 0], uv[:, 1]) - q[:, 0]) ** 2).mean()))
             once = timed(peer) if len(q) > 500_000 else None  # a minute: run once
-            race(name, server, peer, rms, options.rounds, bounds, rows, once)
+            race(name, server, peer, rms, options.rounds, bounds, rows, len(q), once)
             server.close()
+    whole_calls(rows)
+    rows.append(small_call())
     machine = {"processor": next((l.split(":")[1].strip() for l in open("/proc/cpuinfo") if l.startswith("model name")), platform.processor()),
                "python": platform.python_version()}
     options.json.parent.mkdir(parents=True, exist_ok=True)

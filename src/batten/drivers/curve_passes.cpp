@@ -275,6 +275,7 @@ Passed CurvePasses::measured(const Choice& choice) {
 } // namespace
 
 std::optional<Passed> fit_in_passes(SampleSource& source, const FitOptions& options) {
+    check_extent(source.size(), source.dim());
     check(options);
     const Samples samples = outline(source);
     const SampleKind kind = kind_of(samples, options.shape);

@@ -1,6 +1,7 @@
 #include <batten/fit/account.hpp>
 
 #include <batten/measure/deviation.hpp>
+#include <batten/measure/grid_deviation.hpp>
 #include <batten/parametrize/step_lengths.hpp>
 #include <batten/problem/held.hpp>
 
@@ -158,10 +159,18 @@ FitResult accounted(Fitted fitted, const Problem& problem) {
     std::vector<std::string> notes = samples.notes;
     if (problem.tolerance.empty()) note_duplicates(fitted.parameters, notes);
     report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
-    std::vector<double> away =
-        fitted.deviations.empty() ? deviations(spline, samples, fitted.parameters, fitted.judged_by)
-                                  : std::move(fitted.deviations);
-    report.deviation = summarise(away, fitted.judged_by);
+    std::vector<double> away = std::move(fitted.deviations);
+    const bool each = problem.options.keep_per_sample || !problem.tolerance.empty();
+    const bool grid =
+        fitted.parameters.axes.size() > 1 && fitted.judged_by == DeviationKind::parametric;
+    if (away.empty() && grid) {
+        if (each) away.resize(static_cast<std::size_t>(samples.size()));
+        report.deviation = grid_deviation(spline, samples.points, fitted.parameters.axes,
+                                          each ? away.data() : nullptr);
+    } else {
+        if (away.empty()) away = deviations(spline, samples, fitted.parameters, fitted.judged_by);
+        report.deviation = summarise(away, fitted.judged_by);
+    }
     report.interpolated = static_cast<Index>(hold.interpolate.size());
     report.constraint_error = interpolation_error(spline, samples, fitted.parameters, hold);
     report.tangents = static_cast<Index>(hold.tangents.size());

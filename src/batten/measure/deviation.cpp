@@ -3,6 +3,7 @@
 #include <batten/core/lane_vectors.hpp>
 #include <batten/core/vector_clones.hpp>
 #include <batten/measure/curve_deviation.hpp>
+#include <batten/measure/grid_deviation.hpp>
 #include <batten/samples/passes.hpp>
 
 #include <algorithm>
@@ -27,11 +28,15 @@ void add_squares(const double* x, Index count, Lanes* squares, Lanes* largest) {
     store(most, largest->value.data());
 }
 
-std::vector<double> lengths(const PointSet& values, const Points& points) {
+/// Of a cloud, some samples at a time.
+std::vector<double> scattered_deviations(const Spline& spline, const Points& points,
+                                         const Points& parameters) {
     std::vector<double> result(static_cast<std::size_t>(points.size()));
     for_each_block(points.size(), block_size, [&](const Block& block) {
+        const PointSet values =
+            evaluate(spline, parameters.slice(block.begin, block.end - block.begin));
         for (Index i = block.begin; i < block.end; ++i)
-            result[static_cast<std::size_t>(i)] = distance(values[i], points[i]);
+            result[static_cast<std::size_t>(i)] = distance(values[i - block.begin], points[i]);
     });
     return result;
 }
@@ -45,9 +50,12 @@ std::string_view to_string(DeviationKind kind) {
 std::vector<double> parametric_deviations(const Spline& spline, const Samples& samples,
                                           const Parameters& parameters) {
     if (parameters.is_scattered())
-        return lengths(evaluate(spline, parameters.scattered), samples.points);
-    if (parameters.axes.size() > 1)
-        return lengths(evaluate_grid(spline, parameters.axes), samples.points);
+        return scattered_deviations(spline, samples.points, parameters.scattered);
+    if (parameters.axes.size() > 1) {
+        std::vector<double> result(static_cast<std::size_t>(samples.size()));
+        grid_deviation(spline, samples.points, parameters.axes, result.data());
+        return result;
+    }
     return curve_deviations(spline, samples.points, parameters.axes[0]);
 }
 

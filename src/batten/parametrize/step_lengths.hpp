@@ -16,7 +16,9 @@ double accumulate_steps(const double* points, Index count, Index dim, const doub
 /// Equal neighbours among ascending parameters that pass by in pieces.
 class EqualRuns {
   public:
-    void add(std::span<const double> t) { add(t, joins(t.front())); }
+    void add(std::span<const double> t) {
+        if (!t.empty()) add(t, joins(t.front()));
+    }
     /// `joined`: the first is the same as the last before.
     void add(std::span<const double> t, bool joined);
     /// Whether the next parameter is the same as the last before.

@@ -13,7 +13,7 @@ void SampleScan::add(const SampleChunk& chunk, const PointScan& points) {
 }
 
 void SampleScan::check(Index samples) const {
-    if (samples == 0) throw InvalidInput("samples: there are none");
+    check_extent(samples, box_.dim());
     if (weights_.largest() > 0) weights_.check_range();
 }
 

@@ -30,10 +30,14 @@ void check_sample(std::string_view what, Index i, Index samples) {
         throw InvalidInput(fmt::format("{} {}: the samples are 0 to {}", what, i, samples - 1));
 }
 
+void check_extent(Index samples, Index dim) {
+    if (samples == 0) throw InvalidInput("samples: there are none");
+    if (dim < 1 || dim > 16)
+        throw InvalidInput(fmt::format("samples: dimension {} is outside 1 to 16", dim));
+}
+
 void check_shape(const Samples& samples) {
-    if (samples.size() == 0) throw InvalidInput("samples: there are none");
-    if (samples.dim() < 1 || samples.dim() > 16)
-        throw InvalidInput(fmt::format("samples: dimension {} is outside 1 to 16", samples.dim()));
+    check_extent(samples.size(), samples.dim());
     if (!samples.weights.empty() && static_cast<Index>(samples.weights.size()) != samples.size())
         throw InvalidInput(fmt::format("weights: {} given for {} samples; one per sample is needed",
                                        samples.weights.size(), samples.size()));

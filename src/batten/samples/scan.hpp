@@ -38,6 +38,10 @@ class PointScan {
 /// Points taken block by block, on all threads.
 PointScan scanned(const Points& points);
 
+/// Throws InvalidInput when there are no samples (-1: it is not known how many), or dim is outside
+/// 1 to 16.
+void check_extent(Index samples, Index dim);
+
 /// Throws InvalidInput as check(samples) does, by the scan of their points.
 void check(const Samples& samples, const PointScan& scan);
 
