@@ -1,7 +1,7 @@
 #include <batten/fit/assemble_system.hpp>
 
-#include <batten/fit/rescale.hpp>
 #include <batten/problem/plan.hpp>
+#include <batten/samples/scan.hpp>
 #include <batten/system/normal_system.hpp>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 /// Sums of systems add up as they are: nothing can be rescaled in one of them alone.
 void check_range(const Samples& samples) {
     constexpr double most = 0x1p200;
-    if (usual_unit(samples.points) != 1)
+    if (usual_unit(bounding_box(samples.points)) != 1)
         throw InvalidInput("the points' coordinates are outside 1e-60 to 1e60, so that sums of "
                            "their squares leave the range of numbers; take another unit");
     if (samples.weights.empty()) return;

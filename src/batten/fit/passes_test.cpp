@@ -1,32 +1,9 @@
+#include "allocations.hpp"
 #include "problems.hpp"
 
 #include <batten/samples/passes.hpp>
 
-#include <atomic>
-#include <cstdlib>
 #include <limits>
-#include <new>
-
-#ifndef __SANITIZE_ADDRESS__ // which has an allocator of its own
-namespace {
-/// The largest piece of memory that was asked for since it was zero.
-std::atomic<std::size_t> largest_piece = 0;
-} // namespace
-
-void* operator new(std::size_t size) {
-    for (std::size_t seen = largest_piece; seen < size;)
-        if (largest_piece.compare_exchange_weak(seen, size)) break;
-    void* memory = std::malloc(size > 0 ? size : 1);
-    if (memory == nullptr) throw std::bad_alloc();
-    return memory;
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t /*size*/) noexcept {
-    std::free(memory);
-}
-#endif
 
 namespace batten {
 namespace {
@@ -264,15 +241,15 @@ TEST(Passes, nothing_large_is_allocated_for_many_samples) {
         options->threads = 1;
         for (const Index most : {Index{0}, Index{1000}}) {
             CountingSource source(samples, most);
-            largest_piece = 0;
+            testing::largest_allocation = 0;
             const FitResult result = fit(source, *options);
-            EXPECT_LE(largest_piece, std::size_t{1} << 20U);
+            EXPECT_LE(testing::largest_allocation, std::size_t{1} << 20U);
             EXPECT_EQ(source.passes, options == &chord ? 3 : 2);
             EXPECT_LT(result.report.deviation.maximum, 0.01);
         }
-        largest_piece = 0;
+        testing::largest_allocation = 0;
         (void)fit(samples, *options);
-        EXPECT_LE(largest_piece, std::size_t{1} << 20U);
+        EXPECT_LE(testing::largest_allocation, std::size_t{1} << 20U);
     }
 }
 #endif

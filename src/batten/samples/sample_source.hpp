@@ -40,10 +40,6 @@ class SampleSource {
     SampleSource() = default;
 };
 
-/// What check() asks of samples without looking at a coordinate or a weight: how many there are,
-/// their dimension, whether they make the grid. Throws InvalidInput.
-void check_shape(const Samples& samples);
-
 /// Samples in memory, which must outlive it: chunks are views, nothing is copied.
 class MemorySource final : public SampleSource {
   public:

@@ -60,7 +60,8 @@ struct Samples {
 /// match, a coordinate is not finite (the sample is named) or a weight is not positive and finite.
 void check(const Samples& samples);
 
-/// The part of it that no coordinate and no weight decides.
+/// What check() asks of samples without looking at a coordinate or a weight: how many there are,
+/// their dimension, whether they make the grid. Throws InvalidInput.
 void check_shape(const Samples& samples);
 
 /// Throws InvalidInput, `what` first, unless i is one of so many samples.
