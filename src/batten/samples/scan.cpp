@@ -85,8 +85,8 @@ void PointScan::clear() {
 
 void PointScan::add(const double* points, Index count) {
     Lanes probe;
-    const Index groups = dim_ <= 16 ? count / lanes : 0;
-    scan_points(points, groups, dim_, least_.data(), largest_.data(), &probe);
+    const Index groups = dim_ <= 16 ? count / lanes : 0; // it has room for so many coordinates
+    if (groups > 0) scan_points(points, groups, dim_, least_.data(), largest_.data(), &probe);
     for (Index k = groups * lanes * dim_; k < count * dim_; ++k) {
         const double x = points[k];
         const Index at = k % (lanes * dim_);
