@@ -103,15 +103,25 @@ FitResult kept(FitResult result, const FitOptions& options) {
     return result;
 }
 
-/// Of samples in memory, whatever is asked.
+FitResult fit_in_memory(const Samples& samples, const FitOptions& options);
+
+/// In passes where that can be, else in memory.
+FitResult fit_either_way(const Samples& samples, const FitOptions& options) {
+    MemorySource source(samples);
+    if (auto passed = fit_in_passes(source, options))
+        return accounted(std::move(*passed), samples.notes, options);
+    return fit_in_memory(samples, options);
+}
+
+/// Of samples in memory, whatever is asked; unusual units and weights first made usual.
 FitResult fit_in_memory(const Samples& samples, const FitOptions& options) {
     Stopwatch watch;
     const PointScan scan = scanned(samples.points);
     if (const double unit = usual_unit(scan.box()); unit != 1)
-        return rescaled(fit_in_memory(rescaled(samples, unit), rescaled(options, unit)), 1 / unit);
+        return rescaled(fit_either_way(rescaled(samples, unit), rescaled(options, unit)), 1 / unit);
     if (const double unit = usual_weight(samples.weights, options); unit != 1) {
         check(samples, scan); // names what the caller stated
-        return reweighted(fit_in_memory(reweighted(samples, unit), reweighted(options, unit)),
+        return reweighted(fit_either_way(reweighted(samples, unit), reweighted(options, unit)),
                           unit);
     }
     Problem problem = problem_of(samples, options, scan);
@@ -181,10 +191,7 @@ FitResult fit(const Samples& samples, const FitOptions& options) {
     const ThreadLimit limit(options.threads);
     check_settings(method_entry(options.method.name), options.method.settings);
     check_shape(samples);
-    MemorySource source(samples);
-    if (auto passed = fit_in_passes(source, options))
-        return accounted(std::move(*passed), samples.notes, options);
-    return kept(fit_in_memory(samples, options), options);
+    return kept(fit_either_way(samples, options), options);
 }
 
 } // namespace batten

@@ -17,8 +17,9 @@ FitResult fit(const Samples& samples, const FitOptions& options = {});
 
 /// The same of samples that are read in chunks. A sequence for a stated size or knots is fitted
 /// directly in three passes, or four where the source does not know how many samples it has, with
-/// memory for some chunks and the control points; for all else the samples are read into memory,
-/// or InvalidInput says how much would be needed. Results are those of the samples in memory,
+/// memory for some chunks and the control points; for all else, and weights of which the largest
+/// is not from 1 to 2, the samples are read into memory, or InvalidInput says how much would be
+/// needed. Results are those of the samples in memory,
 /// whatever the chunks.
 FitResult fit(SampleSource& samples, const FitOptions& options = {});
 

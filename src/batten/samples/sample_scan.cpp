@@ -19,9 +19,9 @@ void SampleScan::check(Index samples) const {
 
 bool SampleScan::usual_numbers() const {
     constexpr int far = 200;
-    const bool usual_weights =
-        !(weights_.largest() > 0) || std::abs(std::ilogb(weights_.largest())) <= far;
-    return usual_weights && usual_unit(box_.box()) == 1;
+    const int exponent = weights_.largest() > 0 ? std::ilogb(weights_.largest()) : 0;
+    // weights that differ count by their ratios: the largest is from 1 to 2, or is to be made so
+    return std::abs(exponent) <= (weighted() ? 0 : far) && usual_unit(box_.box()) == 1;
 }
 
 } // namespace batten
