@@ -1,6 +1,7 @@
 #include <batten/fit/fit.hpp>
 
 #include <batten/core/counts.hpp>
+#include <batten/core/large_array.hpp>
 #include <batten/core/stopwatch.hpp>
 #include <batten/drivers/choose.hpp>
 #include <batten/drivers/curve_passes.hpp>
@@ -105,25 +106,25 @@ FitResult kept(FitResult result, const FitOptions& options) {
 
 FitResult fit_in_memory(const Samples& samples, const FitOptions& options);
 
-/// In passes where that can be, else in memory.
+/// In passes where that can be, else in memory; unusual weights first made usual.
 FitResult fit_either_way(const Samples& samples, const FitOptions& options) {
+    if (const double unit = usual_weight(samples.weights, options); unit != 1) {
+        check(samples); // names what the caller stated
+        return reweighted(fit_either_way(reweighted(samples, unit), reweighted(options, unit)),
+                          unit);
+    }
     MemorySource source(samples);
     if (auto passed = fit_in_passes(source, options))
         return accounted(std::move(*passed), samples.notes, options);
     return fit_in_memory(samples, options);
 }
 
-/// Of samples in memory, whatever is asked; unusual units and weights first made usual.
+/// Of samples in memory with usual weights, whatever is asked; unusual units first made usual.
 FitResult fit_in_memory(const Samples& samples, const FitOptions& options) {
     Stopwatch watch;
     const PointScan scan = scanned(samples.points);
     if (const double unit = usual_unit(scan.box()); unit != 1)
         return rescaled(fit_either_way(rescaled(samples, unit), rescaled(options, unit)), 1 / unit);
-    if (const double unit = usual_weight(samples.weights, options); unit != 1) {
-        check(samples, scan); // names what the caller stated
-        return reweighted(fit_either_way(reweighted(samples, unit), reweighted(options, unit)),
-                          unit);
-    }
     Problem problem = problem_of(samples, options, scan);
     if (!samples.weights.empty() &&
         std::ranges::all_of(samples.weights, [](double w) { return w == 1; })) {
@@ -149,20 +150,25 @@ Held held(SampleSource& source) {
         check_memory(count * dim, "samples in memory, which what is asked needs");
     };
     if (source.size() > 0) check(source.size());
-    std::vector<double> values;
+    LargeArray values;
     std::vector<double> weights;
     if (source.size() > 0) values.reserve(static_cast<std::size_t>(source.size() * dim));
     source.rewind();
     for (Points points = source.next(chunk_samples); !points.empty();
          points = source.next(chunk_samples)) {
-        const std::size_t count = static_cast<std::size_t>(points.size() * dim);
-        if (values.size() + count > values.capacity())
-            check(2 * static_cast<Index>(values.capacity()) / dim);
-        values.insert(values.end(), points.data(), points.data() + count);
+        const std::size_t before = values.size();
+        const std::size_t after = before + static_cast<std::size_t>(points.size() * dim);
+        if (after > values.capacity()) {
+            check(2 * static_cast<Index>(after) / dim);
+            values.reserve(2 * after);
+        }
+        values.resize(after);
+        std::copy_n(points.data(), after - before, values.data() + before);
         const auto own = source.weights();
         weights.insert(weights.end(), own.begin(), own.end());
     }
-    return {{.points = PointSet(std::move(values), dim),
+    const Index count = static_cast<Index>(values.size()) / dim;
+    return {{.points = std::move(values).points(count, dim),
              .grid = source.grid(),
              .weights = std::move(weights),
              .order = source.order(),
@@ -180,7 +186,7 @@ FitResult fit(SampleSource& source, const FitOptions& options) {
     if (auto passed = fit_in_passes(source, options))
         return accounted(std::move(*passed), source.notes(), options);
     const Held in_memory = held(source);
-    FitResult result = fit_in_memory(in_memory.samples, options);
+    FitResult result = fit_either_way(in_memory.samples, options);
     result.report.bytes_read = source.bytes() - before;
     auto& seconds = result.report.seconds;
     seconds.insert(seconds.begin(), {"reading", in_memory.seconds});
