@@ -3,11 +3,10 @@
 #include <batten/core/counts.hpp>
 #include <batten/core/errors.hpp>
 #include <batten/io/point_formats.hpp>
+#include <batten/samples/scan.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace batten {
 
@@ -99,18 +98,13 @@ class FileSource final : public SampleSource {
     }
 
     void check_finite(Index count) const {
-        const auto numbers = static_cast<std::size_t>(count * numbers_each_);
-        double probe = 0; // stays zero while all are finite, and the loop vectorises
-        for (std::size_t k = 0; k < numbers; ++k) probe += buffer_[k] * 0.0;
-        if (probe == 0) return;
-        for (Index i = 0; i < count; ++i) {
-            const std::span<const double> x(buffer_.data() + i * numbers_each_,
-                                            static_cast<std::size_t>(numbers_each_));
-            if (!std::ranges::all_of(x, [](double value) { return std::isfinite(value); }))
-                throw InvalidInput(
-                    fmt::format("{}: sample {}: its coordinates ({}) must be finite numbers",
-                                reader_->not_finite_place(), next_ + i, fmt::join(x, ", ")));
-        }
+        PointScan scan(numbers_each_);
+        scan.add(buffer_.data(), count);
+        const Index bad = scan.first_bad();
+        if (bad < 0) return;
+        const InvalidInput what =
+            not_finite(next_ + bad, Points(buffer_.data(), count, numbers_each_)[bad]);
+        throw InvalidInput(fmt::format("{}: {}", reader_->not_finite_place(), what.what()));
     }
 
     /// Heights over their places in the grid.

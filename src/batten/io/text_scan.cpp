@@ -186,8 +186,10 @@ void scan_rows(std::string_view text, TextLayout layout, Index columns, TextRows
         if (rows.values.size() < count + width) rows.values.resize(count + width);
         double* out = rows.values.data() + count;
         const char* next = plain_row(text.data(), text.data() + text.size(), columns, out);
-        std::size_t length = static_cast<std::size_t>(next - text.data());
-        if (next == nullptr) {
+        std::size_t length = 0;
+        if (next != nullptr) {
+            length = static_cast<std::size_t>(next - text.data());
+        } else {
             const std::size_t end = std::min(text.find('\n'), text.size());
             length = std::min(end + 1, text.size());
             split(without_comment(text.substr(0, end)), tokens);
