@@ -1,16 +1,12 @@
 #include "commands.hpp"
-#include "export_flags.hpp"
-#include "fit_files.hpp"
 #include "parse.hpp"
 #include "spline_input.hpp"
+#include "spline_outputs.hpp"
 
 #include <batten/fair/fair.hpp>
 #include <batten/io/output_place.hpp>
-#include <batten/io/output_set.hpp>
 #include <batten/io/points_file.hpp>
-#include <batten/io/spline_file.hpp>
 
-#include <cstdio>
 #include <memory>
 
 namespace batten::command {
@@ -19,12 +15,10 @@ namespace {
 
 struct Flags {
     SplineInput spline;
-    std::vector<std::string> outputs;
-    std::string weights, points, summary;
+    std::string weights, points;
     std::vector<std::string> set;
     FairOptions options;
-    bool quiet = false;
-    ExportFlags exported;
+    SplineOutputs outputs;
 };
 
 FairOptions options_of(const Flags& flags) {
@@ -40,15 +34,7 @@ std::vector<FileUse> checked_outputs(const Flags& flags, const CLI::App& app) {
     std::vector<FileUse> inputs{{flags.spline.path, "the spline"}};
     if (!flags.weights.empty()) inputs.push_back({flags.weights, "--weights"});
     if (!is_list(flags.points)) inputs.push_back({flags.points, "--points"});
-    std::vector<FileUse> written;
-    for (const std::string& output : flags.outputs) {
-        check_output(output);
-        written.push_back({output, "--output"});
-    }
-    if (!flags.summary.empty()) written.push_back({flags.summary, "--summary"});
-    check_outputs(written, inputs);
-    check(flags.exported, app, flags.outputs);
-    return written;
+    return checked(flags.outputs, app, inputs);
 }
 
 void run(const Flags& flags, const CLI::App& app) {
@@ -57,16 +43,10 @@ void run(const Flags& flags, const CLI::App& app) {
     if (result.report.course.termination == Termination::breakdown)
         throw SolverError(
             "the iteration broke down: numbers left the finite range; nothing was written");
-    Scene scene{.spline = result.spline,
-                .title = std::filesystem::path(flags.spline.path).stem().string()};
-    apply(flags.exported, scene);
-    OutputSet set;
-    for (const std::string& output : flags.outputs) set.add(output, spline_content(output, scene));
-    if (!flags.summary.empty()) set.add(flags.summary, result.report.to_json());
-    set.put_in_place();
-    if (flags.quiet) return;
-    print_notes(flags.outputs, scene);
-    std::fputs(result.report.full().c_str(), take_standard_output(written) ? stderr : stdout);
+    write(flags.outputs, written,
+          {.spline = result.spline,
+           .title = std::filesystem::path(flags.spline.path).stem().string()},
+          result.report.to_json(), result.report.full());
 }
 
 void add_flags(CLI::App& sub, Flags& flags) {
@@ -97,13 +77,7 @@ void add_flags(CLI::App& sub, Flags& flags) {
     sub.add_option("--stop-relative-gradient", options.stop.relative_gradient,
                    "Stop when the gradient is this small beside the first one")
         ->capture_default_str();
-    sub.add_option("--output,-o", flags.outputs,
-                   "File whose extension names the format; may be repeated")
-        ->required()
-        ->group("Output");
-    sub.add_option("--summary", flags.summary, "The account as JSON")->group("Output");
-    sub.add_flag("--quiet,-q", flags.quiet, "Print nothing")->group("Output");
-    add_export_flags(sub, flags.exported);
+    add_spline_outputs(sub, flags.outputs);
     one_value_each(sub);
 }
 

@@ -1,13 +1,12 @@
 #include "commands.hpp"
-#include "export_flags.hpp"
 #include "fit_files.hpp"
 #include "fit_flags.hpp"
 #include "parse.hpp"
+#include "spline_outputs.hpp"
 #include "system_files.hpp"
 
 #include <batten/fit/solve_system.hpp>
 #include <batten/io/output_file.hpp>
-#include <batten/io/output_set.hpp>
 #include <batten/io/spline_file.hpp>
 #include <batten/io/system_file.hpp>
 
@@ -76,24 +75,15 @@ void merge(const MergeFlags& flags) {
 
 struct SolveFlags {
     std::string system;
-    std::vector<std::string> outputs;
-    std::string control_points, knots, smooth, summary;
+    std::string control_points, knots, smooth;
     int smooth_order = 2;
-    bool quiet = false;
-    ExportFlags exported;
+    SplineOutputs outputs;
 };
 
 std::vector<FileUse> checked_outputs(const SolveFlags& flags, const CLI::App& app) {
     std::vector<FileUse> inputs{{flags.system, "the system"}};
     if (!flags.knots.empty()) inputs.push_back({flags.knots, "--knots"});
-    std::vector<FileUse> written;
-    for (const std::string& output : flags.outputs) {
-        check_output(output);
-        written.push_back({output, "--output"});
-    }
-    if (!flags.summary.empty()) written.push_back({flags.summary, "--summary"});
-    check_outputs(written, inputs);
-    check(flags.exported, app, flags.outputs);
+    std::vector<FileUse> written = checked(flags.outputs, app, inputs);
     if (app.count("--smooth-order") > 0 && flags.smooth.empty())
         throw InvalidInput("--smooth-order: it needs --smooth");
     return written;
@@ -107,19 +97,12 @@ void solve(const SolveFlags& flags, const CLI::App& app) {
         options.control_points = parse_shape("--control-points", flags.control_points);
     if (!flags.knots.empty()) options.knots = given_knots(flags.knots);
     SystemSums sums = load_system(flags.system);
-    for (const std::string& output : flags.outputs)
+    for (const std::string& output : flags.outputs.files)
         batten::check_holds(output, std::ssize(sums.axes), sums.rhs.dim());
     const SolveResult result = solve_system(std::move(sums), options);
-    Scene scene{.spline = result.spline,
-                .title = std::filesystem::path(flags.system).stem().string()};
-    apply(flags.exported, scene);
-    OutputSet set;
-    for (const std::string& output : flags.outputs) set.add(output, spline_content(output, scene));
-    if (!flags.summary.empty()) set.add(flags.summary, result.report.to_json());
-    set.put_in_place();
-    if (flags.quiet) return;
-    print_notes(flags.outputs, scene);
-    std::fputs(result.report.full().c_str(), take_standard_output(written) ? stderr : stdout);
+    write(flags.outputs, written,
+          {.spline = result.spline, .title = std::filesystem::path(flags.system).stem().string()},
+          result.report.to_json(), result.report.full());
 }
 
 void add_solve_flags(CLI::App& sub, SolveFlags& flags) {
@@ -136,13 +119,7 @@ void add_solve_flags(CLI::App& sub, SolveFlags& flags) {
                    "Derivative whose square is the roughness, 2 or 3")
         ->check(CLI::IsMember({2, 3}))
         ->capture_default_str();
-    sub.add_option("--output,-o", flags.outputs,
-                   "File whose extension names the format; may be repeated")
-        ->required()
-        ->group("Output");
-    sub.add_option("--summary", flags.summary, "The account as JSON")->group("Output");
-    sub.add_flag("--quiet,-q", flags.quiet, "Print nothing")->group("Output");
-    add_export_flags(sub, flags.exported);
+    add_spline_outputs(sub, flags.outputs);
     one_value_each(sub);
 }
 
