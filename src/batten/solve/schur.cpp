@@ -1,5 +1,6 @@
 #include <batten/solve/schur.hpp>
 
+#include <batten/core/vectors.hpp>
 #include <batten/solve/extreme_eigenvalues.hpp>
 
 #include <Eigen/Dense>
@@ -67,7 +68,7 @@ PointSet SchurComplement::solve(const PointSet& b) const {
     PointSet x = b;
     if (band_) {
         x = band_->multipliers(b);
-        for (double& value : x.values()) value = -value;
+        scale(x.values(), -1);
         return x;
     }
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

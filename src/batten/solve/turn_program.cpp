@@ -155,10 +155,6 @@ struct Place {
     Vector pull;
 };
 
-double product(const Vector& a, const Vector& b) {
-    return dot(a, b);
-}
-
 /// The part of the way on which all numbers stay positive, at most 1.
 double length_inside(const Vector& from, const Vector& step) {
     double length = 1;
@@ -168,7 +164,7 @@ double length_inside(const Vector& from, const Vector& step) {
 }
 
 void move(Vector& from, double length, const Vector& step) {
-    for (std::size_t k = 0; k < from.size(); ++k) from[k] += length * step[k];
+    add_scaled(from.data(), length, step.data(), static_cast<Index>(from.size()));
 }
 
 /// One step of the interior point method towards slack times pull = `wanted`, each.
@@ -202,7 +198,7 @@ Place interior(const Program& program, double largest) {
     for (std::size_t k = 0; k < count; ++k)
         now.slack[k] = std::max(-program.rows()[k].least, largest);
     for (int round = 0; round < most_steps; ++round) {
-        const double gap = product(now.slack, now.pull) / size;
+        const double gap = dot(now.slack, now.pull) / size;
         if (gap <= enough * largest * largest) break;
         Vector weights(count);
         for (std::size_t k = 0; k < count; ++k) weights[k] = now.pull[k] / now.slack[k];
